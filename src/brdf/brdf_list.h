@@ -14,9 +14,10 @@ inline const BrdfInfo* const kBrdfList[] = {&kPhongBrdf, &kGgxBrdf, &kWardBrdf};
 constexpr std::uint32_t kBrdfCount = sizeof kBrdfList / sizeof kBrdfList[0];
 static_assert(kBrdfCount <= kBrdfCountMax, "raise it in base/limits.h");
 
-// Whether the material's lobe has a grain, which takes texture coordinates.
+// Whether the material's lobe has a grain, which takes texture coordinates or tangents.
 inline bool has_grain(const Scene& scene, std::uint32_t material) {
-  if (scene.grains.empty() || scene.uvs.empty() || !kBrdfList[scene.materials[material].brdf]->with_grain) return false;
+  if (scene.grains.empty() || (scene.uvs.empty() && scene.tangents.empty())) return false;
+  if (!kBrdfList[scene.materials[material].brdf]->with_grain) return false;
   const Vec2& direction = scene.grains[material].direction;
   return direction.x != 0 || direction.y != 0;
 }

@@ -38,8 +38,9 @@ enum class Effect : std::uint8_t {
   environment_shadow,
   anisotropy,
   second_uv,
+  clear_coat,
 };
-constexpr int kEffectCount = 33;
+constexpr int kEffectCount = 34;
 
 using EffectMask = std::uint64_t;
 constexpr EffectMask bit(Effect effect) { return EffectMask(1) << static_cast<int>(effect); }

@@ -44,6 +44,7 @@ constexpr EffectRow kEffectList[kEffectCount] = {
     {Effect::environment_shadow, "environment-shadow", "a stored environment and a diffuse material"},
     {Effect::anisotropy, "anisotropy", "a glossy material with a grain, such as brushed metal"},
     {Effect::second_uv, "second-uv", "a material whose textures use two sets of texture coordinates"},
+    {Effect::clear_coat, "clear-coat", "a material under a clear coat"},
 };
 
 constexpr bool effects_in_order() {

@@ -39,7 +39,10 @@ void append_placed(GltfFile* file, int index, MeshData mesh, const Transform& in
   if (mesh.morph_count > 0 && !node.weights_move)
     gltf_apply_morph(&mesh, gltf_morph_weights(*file, index, mesh.morph_count));
   bool moves = skinned ? gltf_skin_moves(*file, source.skin) : node.moves;
-  if (moves || (mesh.morph_count > 0 && node.weights_move)) return append_moving(file, index, mesh, instance);
+  if (moves || (mesh.morph_count > 0 && node.weights_move)) {
+    mesh.tangents.clear();
+    return append_moving(file, index, mesh, instance);
+  }
   if (skinned) gltf_apply_skin(&mesh, gltf_skin_transforms(file, source.skin));
   append_mesh(file->builder, mesh, skinned ? Transform() : node.world * instance);
 }

@@ -103,6 +103,13 @@ MetallicRoughness gltf_mean_model(GltfFile* file, const tinygltf::Material& sour
 // or of the first other texture, and one more. A remark names textures of further ones, which use the first.
 GltfUvSets gltf_choose_uv_sets(GltfFile* file, const tinygltf::Material& source);
 
+// gltf_coat.cpp: the clear coat of a material, and its textures if it has one.
+struct GltfCoatTextures {
+  tinygltf::TextureInfo strength, roughness, normal;
+};
+GltfCoatTextures gltf_coat_textures(const tinygltf::Material& source);
+ClearCoat gltf_read_coat(GltfFile* file, const tinygltf::Material& source);
+
 // gltf_mesh.cpp: the primitives of a mesh that make triangles.
 std::vector<MeshData> gltf_mesh(GltfFile* file, int mesh);
 

@@ -109,6 +109,8 @@ void gltf_read_maps(GltfFile* file, const tinygltf::Material& source, bool is_cl
 GltfUvSets gltf_choose_uv_sets(GltfFile* file, const tinygltf::Material& source) {
   const tinygltf::PbrMetallicRoughness& pbr = source.pbrMetallicRoughness;
   const SpecularTextures specular = specular_textures(source);
+  const GltfCoatTextures coat = gltf_coat_textures(source);
+  const bool leads = source.normalTexture.index < 0;  // the frame of tangents is of the coat's normals alone
   const tinygltf::Value* anisotropy = gltf_extension(source.extensions, "KHR_materials_anisotropy");
   const bool has_grain = anisotropy && gltf_number(*anisotropy, "anisotropyStrength", 0) > 0;
   const bool is_lit = !gltf_extension(source.extensions, "KHR_materials_unlit");
@@ -119,13 +121,16 @@ GltfUvSets gltf_choose_uv_sets(GltfFile* file, const tinygltf::Material& source)
     tinygltf::TextureInfo info;
     bool is_used;
   } all[] = {{"normal", plain(source.normalTexture), is_lit},
+             {"clear coat normal", coat.normal, is_lit && leads},
              {"anisotropy", anisotropy_texture(source), is_lit && has_grain},
              {"base colour", pbr.baseColorTexture, true},
              {"metallic-roughness", pbr.metallicRoughnessTexture, is_lit},
              {"specular", specular.share, is_lit},
              {"specular colour", specular.color, is_lit},
              {"emission", source.emissiveTexture, is_lit && glows},
-             {"occlusion", plain(source.occlusionTexture), is_lit}};
+             {"occlusion", plain(source.occlusionTexture), is_lit},
+             {"clear coat", coat.strength, is_lit},
+             {"clear coat roughness", coat.roughness, is_lit}};
   const char* first = nullptr;
   GltfUvSets sets;
   for (const auto& texture : all) {

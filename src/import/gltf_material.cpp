@@ -157,8 +157,9 @@ std::uint32_t gltf_material(GltfFile* file, int index) {
   MaterialMaps maps;
   Material material = convert(file, source, &maps);
   const Grain grain = read_grain(file, source, material);
+  const ClearCoat coat = gltf_read_coat(file, source);
   const bool needs_uvs = material.diffuse_texture.texture != kNone || material.emission_texture.texture != kNone ||
-                         has_map(maps) || has_strength(grain);
+                         has_map(maps) || has_strength(grain) || is_textured(coat);
   if (index >= 0 && needs_uvs) file->uv_sets[static_cast<std::size_t>(index)] = file->current_uv_sets;
   *known = add_material(file->builder, material, source.name);
   if (has_map(maps)) {
@@ -168,6 +169,10 @@ std::uint32_t gltf_material(GltfFile* file, int index) {
   if (has_strength(grain)) {
     out.grains.resize(*known);
     out.grains.push_back(grain);
+  }
+  if (coat.strength > 0) {
+    out.clear_coats.resize(*known);
+    out.clear_coats.push_back(coat);
   }
   return *known;
 }

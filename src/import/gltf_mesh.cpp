@@ -4,6 +4,7 @@
 #include "base/limits.h"
 #include "import/gltf.h"
 #include "import/import_error.h"
+#include "import/tangents.h"
 
 namespace pocketray {
 namespace {
@@ -83,6 +84,32 @@ void read_uvs(GltfFile* file, const tinygltf::Primitive& primitive, int set, con
   for (std::size_t i = 0; i < uvs->size(); ++i) (*uvs)[i] = {values[2 * i], values[2 * i + 1]};
 }
 
+// Tangents of the file where the material needs some (sec. 3.7.2.1); zero where one is along the normal or has no
+// handedness, so that it is made like those of files without.
+void read_tangents(GltfFile* file, const tinygltf::Primitive& primitive, MeshData* mesh) {
+  constexpr double kSineMin = 1e-3;  // chosen: a direction that rounding has not made
+  const int accessor = attribute(primitive, "TANGENT");
+  if (accessor < 0 || mesh->normals.empty() || !needs_tangents(*file->builder->out, mesh->material)) return;
+  std::vector<float> values;
+  try {
+    values = gltf_floats(file, accessor, 4, "TANGENT");
+    require_count(values.size() / 4, mesh->positions.size(), "TANGENT");
+  } catch (const ImportError& error) {
+    note_remark(file->builder, std::string("tangents are made anew: ") + error.what());
+    return;
+  }
+  std::size_t unusable = 0;
+  for (std::size_t i = 0; i < mesh->normals.size(); ++i) {
+    const float* t = &values[4 * i];
+    const Vec3d way = normalize(Vec3d{t[0], t[1], t[2]}), n = to_double(mesh->normals[i]), flat = way - n * dot(n, way);
+    const bool is_usable = length(flat) > kSineMin && t[3] != 0;
+    unusable += !is_usable;
+    mesh->tangents.push_back({is_usable ? to_float(normalize(flat)) : Vec3{0, 0, 0}, t[3] < 0 ? -1 : 1});
+  }
+  if (unusable)
+    note_remark(file->builder, "tangents that are zero, along the normal or without handedness are made anew");
+}
+
 void read_skin_weights(GltfFile* file, const tinygltf::Primitive& primitive, MeshData* mesh) {
   int joints = attribute(primitive, "JOINTS_0"), weights = attribute(primitive, "WEIGHTS_0");
   if (joints < 0 || weights < 0) return;
@@ -147,6 +174,7 @@ MeshData read_primitive(GltfFile* file, const tinygltf::Primitive& primitive, co
     read_uvs(file, primitive, sets.first, mesh, &mesh.uvs);
     read_uvs(file, primitive, sets.second, mesh, &mesh.second_uvs);
   }
+  read_tangents(file, primitive, &mesh);
   if (colors >= 0) read_colors(file, colors, &mesh);
   if (attribute(primitive, "COLOR_1") >= 0) note_unused(file->builder, "second vertex colours");
   read_skin_weights(file, primitive, &mesh);

@@ -25,6 +25,7 @@ const char* const kKnownExtensions[] = {
     "KHR_mesh_quantization",
     "KHR_materials_pbrSpecularGlossiness",
     "KHR_materials_anisotropy",
+    "KHR_materials_clearcoat",
 };
 bool is_known_extension(const std::string& name) {
   return std::any_of(std::begin(kKnownExtensions), std::end(kKnownExtensions),

@@ -87,6 +87,7 @@ void gltf_apply_morph(MeshData* mesh, const std::vector<float>& weights) {
   std::size_t count = mesh->positions.size();
   for (std::size_t target = 0; target < mesh->morph_count; ++target) {
     if (weights[target] == 0) continue;
+    mesh->tangents.clear();  // they follow the new shape when made anew
     for (std::size_t v = 0; v < count; ++v) {
       mesh->positions[v] += mesh->morph_positions[target * count + v] * weights[target];
       if (!mesh->morph_normals.empty()) mesh->normals[v] += mesh->morph_normals[target * count + v] * weights[target];
@@ -111,6 +112,9 @@ void gltf_apply_skin(MeshData* mesh, const std::vector<Transform>& joints) {
     Transform t = blended(joints, mesh->skin_weights[v]);
     mesh->positions[v] = transform_point(t, mesh->positions[v]);
     if (!mesh->normals.empty()) mesh->normals[v] = transform_normal(t, mesh->normals[v]);
+    if (mesh->tangents.empty()) continue;
+    mesh->tangents[v].direction = transform_vector(t, mesh->tangents[v].direction);
+    if (determinant(t) < 0) mesh->tangents[v].handedness *= -1;
   }
   mesh->skin_weights.clear();
 }

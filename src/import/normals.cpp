@@ -101,6 +101,7 @@ void assign(MeshData* mesh, const std::vector<Vec3>& normals) {
   regather(&mesh->positions, old.positions);
   regather(&mesh->uvs, old.uvs);
   regather(&mesh->second_uvs, old.second_uvs);
+  regather(&mesh->tangents, old.tangents);
   regather(&mesh->colors, old.colors);
   regather(&mesh->skin_weights, old.skin_weights);
 }

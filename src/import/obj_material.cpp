@@ -6,6 +6,7 @@
 // With Pr or Pm (the extension for physically based rendering, as Blender exports it), all but glass is glTF's
 // metallic-roughness material of base colour Kd. `aniso` and `anisor`, a turn being 1, are a grain along u: of that
 // material, or of Ward's lobe, which then stands in for Phong's of Ns with α = 1/√(2(Ns + 2)), as high and as wide.
+// `Pc` and `Pcr` are the strength and the roughness of a clear coat over any material.
 #include "import/obj_material.h"
 
 #include <algorithm>
@@ -118,7 +119,6 @@ void name_unused(SceneBuilder* builder, const tinyobj::material_t& source) {
   if (source.sheen > 0 || !source.sheen_texname.empty()) note_unused(builder, "sheen");
   if (is_glass(source) && (is_physically_based(source) || source.anisotropy > 0))
     note_unused(builder, "Pr, Pm and aniso of glass");
-  if (source.clearcoat_thickness > 0) note_unused(builder, "clear coats");
   if (!source.roughness_texname.empty() || !source.metallic_texname.empty())
     note_unused(builder, "roughness and metallic maps");
 }
@@ -131,6 +131,14 @@ void read_metallic_roughness(const tinyobj::material_t& source, Material* materi
   model.grazing = 1;
   material->brdf = kGgx;
   set_lobes(model, bounded(source.metallic, 0, 1), bounded(source.roughness, 0, 1), 0, material);
+}
+
+// `Pc`, its strength, and `Pcr`, its roughness.
+ClearCoat read_coat(const tinyobj::material_t& source) {
+  ClearCoat coat;
+  coat.strength = bounded(source.clearcoat_thickness, 0, 1);
+  coat.roughness = coat.roughness_low = bounded(source.clearcoat_roughness, 0, 1);
+  return coat;
 }
 
 Grain read_grain(const tinyobj::material_t& source) {
@@ -174,6 +182,11 @@ std::uint32_t add_obj_material(SceneBuilder* builder, const std::string& scene_p
   if (brushed) {
     builder->out->grains.resize(index);
     builder->out->grains.push_back(grain);
+  }
+  const ClearCoat coat = read_coat(source);
+  if (coat.strength > 0) {
+    builder->out->clear_coats.resize(index);
+    builder->out->clear_coats.push_back(coat);
   }
   return index;
 }

@@ -60,6 +60,7 @@ void tidy_mesh(MeshData* mesh) {
   CHECK(mesh->normals.empty() || mesh->normals.size() == count);
   CHECK(mesh->uvs.empty() || mesh->uvs.size() == count);
   CHECK(mesh->second_uvs.empty() || mesh->second_uvs.size() == count);
+  CHECK(mesh->tangents.empty() || mesh->tangents.size() == count);
   CHECK(mesh->colors.empty() || mesh->colors.size() == count);
   CHECK(mesh->skin_weights.empty() || mesh->skin_weights.size() == count);
   CHECK_EQ(mesh->morph_positions.size(), mesh->morph_count * count);
@@ -86,6 +87,7 @@ void tidy_mesh(MeshData* mesh) {
   gather(&mesh->normals, kept, count);
   gather(&mesh->uvs, kept, count);
   gather(&mesh->second_uvs, kept, count);
+  gather(&mesh->tangents, kept, count);
   gather(&mesh->colors, kept, count);
   gather(&mesh->skin_weights, kept, count);
 }
@@ -108,9 +110,11 @@ static std::uint64_t optional_bytes(const std::vector<T>& all, const std::vector
 
 static std::uint64_t vertex_bytes(const SceneArrays& out, const MeshData& mesh) {
   const std::size_t count = mesh.positions.size(), end = out.positions.size() + count;
+  const bool has_tangents = !mesh.tangents.empty() || !out.tangents.empty();
   return count * sizeof(Vec3) + optional_bytes(out.normals, mesh.normals, end) +
          optional_bytes(out.uvs, mesh.uvs, end) + optional_bytes(out.second_uvs, mesh.second_uvs, end) +
-         optional_bytes(out.colors, mesh.colors, end);
+         optional_bytes(out.colors, mesh.colors, end) +
+         (has_tangents ? (end - out.tangents.size()) * sizeof(PackedTangent) : 0);
 }
 
 static void require_coordinate(const Vec3& p, const MeshData& mesh) {
@@ -142,6 +146,7 @@ void append_mesh(SceneBuilder* builder, const MeshData& mesh, const Transform& t
   append_optional(&out.uvs, mesh.uvs, begin, count, Vec2{0, 0});
   append_optional(&out.second_uvs, mesh.second_uvs, begin, count, Vec2{0, 0});
   append_optional(&out.colors, mesh.colors, begin, count, Rgba16{65535, 65535, 65535, 65535});
+  append_optional(&out.tangents, pack_tangents(mesh.tangents, to_world), begin, count, PackedTangent());
 
   bool mirrored = determinant(to_world) < 0;
   std::uint32_t base = static_cast<std::uint32_t>(begin);
@@ -233,7 +238,7 @@ static NamedBoxes named_parts(const SceneBuilder& builder) {
   return named;
 }
 
-static bool is_textured(const Material& material) {
+static bool has_texture(const Material& material) {
   return material.diffuse_texture.texture != kNone || material.emission_texture.texture != kNone;
 }
 
@@ -243,7 +248,8 @@ void finish_scene(SceneBuilder* builder, const std::string& name, ImportedScene*
   if (out.materials.empty()) out.materials.emplace_back();
   std::size_t count = out.positions.size();
   if (!out.normals.empty()) out.normals.resize(count, Vec3{0, 0, 0});
-  bool textured = std::any_of(out.materials.begin(), out.materials.end(), is_textured) ||
+  bool textured = std::any_of(out.materials.begin(), out.materials.end(), has_texture) ||
+                  std::any_of(out.clear_coats.begin(), out.clear_coats.end(), is_textured) ||
                   std::any_of(out.material_maps.begin(), out.material_maps.end(), has_map) ||
                   std::any_of(out.grains.begin(), out.grains.end(),
                               [](const Grain& grain) { return grain.texture.texture != kNone; });
@@ -253,6 +259,7 @@ void finish_scene(SceneBuilder* builder, const std::string& name, ImportedScene*
   reads_second ? out.second_uvs.resize(count, Vec2{0, 0}) : out.second_uvs.clear();
   if (!out.material_maps.empty()) out.material_maps.resize(out.materials.size());
   if (!out.grains.empty()) out.grains.resize(out.materials.size());
+  if (!out.clear_coats.empty()) out.clear_coats.resize(out.materials.size());
   make_tangents(builder);
   if (!out.colors.empty()) out.colors.resize(count, Rgba16{65535, 65535, 65535, 65535});
   if (!out.normals.empty() && !out.rest_positions.empty())
@@ -267,6 +274,7 @@ void finish_scene(SceneBuilder* builder, const std::string& name, ImportedScene*
   scene.uvs = view(out.uvs), scene.second_uvs = view(out.second_uvs), scene.colors = view(out.colors);
   scene.triangles = view(out.triangles), scene.materials = view(out.materials),
   scene.material_maps = view(out.material_maps), scene.grains = view(out.grains);
+  scene.clear_coats = view(out.clear_coats);
   scene.tangents = view(out.tangents);
   scene.textures = view(out.textures), scene.texels = view(out.texels);
   scene.lights = view(out.lights), scene.cameras = view(out.cameras);

@@ -11,6 +11,13 @@
 
 namespace pocketray {
 
+// A tangent that a file gives, perpendicular to the vertex normal; zero: none. The bitangent is normal × direction
+// where handedness is 1, the opposite where it is −1.
+struct GivenTangent {
+  Vec3 direction;
+  int handedness;
+};
+
 // One mesh with one material, in object space.
 struct MeshData {
   std::string name;  // for error lines
@@ -18,6 +25,7 @@ struct MeshData {
   std::vector<Vec3> normals;  // unit, one per vertex, or empty: the geometric normal
   std::vector<Vec2> uvs;      // one per vertex, or empty
   std::vector<Vec2> second_uvs;
+  std::vector<GivenTangent> tangents;  // one per vertex, or empty; not read where the mesh moves
   std::vector<Rgba16> colors;
   std::vector<std::uint32_t> indices;  // three per triangle, counter-clockwise from the front
   std::uint32_t material = 0;
@@ -37,7 +45,8 @@ struct SceneArrays {
   std::vector<Material> materials;
   std::vector<MaterialMaps> material_maps;  // of the first materials; the rest have none
   std::vector<Grain> grains;                // likewise
-  std::vector<PackedTangent> tangents;      // see tangents.h
+  std::vector<ClearCoat> clear_coats;       // likewise
+  std::vector<PackedTangent> tangents;      // of the first vertices; see tangents.h
   std::vector<Texture> textures;
   std::vector<std::uint32_t> texels;
   std::vector<Light> lights;
@@ -105,6 +114,10 @@ void finish_scene(SceneBuilder* builder, const std::string& name, ImportedScene*
 void require_invertible(const Transform& t, const std::string& name);
 
 inline bool has_strength(const Grain& grain) { return grain.direction.x != 0 || grain.direction.y != 0; }
+inline bool is_textured(const ClearCoat& coat) {
+  return coat.strength_texture.texture != kNone || coat.roughness_texture.texture != kNone ||
+         coat.normal.texture != kNone;
+}
 
 // True if a vertex may be part of a triangle (HARDCASES row 8).
 bool is_coordinate(const Vec3& p);

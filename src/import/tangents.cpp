@@ -23,11 +23,6 @@ using Sums = std::map<VertexKey, Sum>;
 // An entry, three links and a colour beside it, and the heap's own word.
 constexpr std::uint64_t kSumBytes = sizeof(Sums::value_type) + 5 * sizeof(void*);
 
-bool needs_tangents(const SceneArrays& out, std::uint32_t material) {
-  if (material < out.grains.size() && has_strength(out.grains[material])) return true;
-  return material < out.material_maps.size() && out.material_maps[material].normal.texture != kNone;
-}
-
 VertexKey key_of(const SceneArrays& out, std::uint32_t vertex) {
   const Vec3 normal = out.normals.empty() ? Vec3{0, 0, 0} : out.normals[vertex];
   const Vec3& p = out.positions[vertex];
@@ -75,27 +70,55 @@ void add_triangle(const SceneBuilder& builder, const Triangle& t, Sums* sums) {
   }
 }
 
-PackedTangent pack(const Vec3d& tangent) {
+PackedTangent pack(const Vec3d& tangent, int handedness) {
   auto byte = [](double x) { return static_cast<std::int8_t>(std::floor(x * 127 + 0.5)); };
-  return {byte(tangent.x), byte(tangent.y), byte(tangent.z), 0};
+  return {byte(tangent.x), byte(tangent.y), byte(tangent.z), static_cast<std::int8_t>(handedness)};
+}
+
+bool is_given(const SceneArrays& out, std::uint32_t vertex) {
+  return vertex < out.tangents.size() && !is_zero(unpacked(out.tangents[vertex]));
+}
+
+bool are_given(const SceneArrays& out, const Triangle& t) {
+  return is_given(out, t.vertex(0)) && is_given(out, t.vertex(1)) && is_given(out, t.vertex(2));
 }
 
 }  // namespace
+
+bool needs_tangents(const SceneArrays& out, std::uint32_t material) {
+  if (material < out.grains.size() && has_strength(out.grains[material])) return true;
+  if (material < out.clear_coats.size() && out.clear_coats[material].normal.texture != kNone) return true;
+  return material < out.material_maps.size() && out.material_maps[material].normal.texture != kNone;
+}
+
+// A mirroring transform also mirrors the bitangent, but not the normal.
+std::vector<PackedTangent> pack_tangents(const std::vector<GivenTangent>& given, const Transform& to_world) {
+  const int side = determinant(to_world) < 0 ? -1 : 1;
+  std::vector<PackedTangent> packed;
+  packed.reserve(given.size());
+  for (const GivenTangent& t : given) {
+    CHECK(t.handedness == 1 || t.handedness == -1);
+    packed.push_back(pack(normalize(to_double(transform_vector(to_world, t.direction))), t.handedness * side));
+  }
+  return packed;
+}
 
 void make_tangents(SceneBuilder* builder) {
   CHECK(builder != nullptr);
   SceneArrays* out = builder->out.get();
   Sums sums;
   for (const Triangle& t : out->triangles)
-    if (needs_tangents(*out, t.material()) && !out->uvs.empty()) add_triangle(*builder, t, &sums);
-  if (sums.empty()) return;
-  charge_bytes(builder, out->positions.size() * sizeof(PackedTangent), "the tangents");
-  out->tangents.assign(out->positions.size(), PackedTangent());
+    if (needs_tangents(*out, t.material()) && !out->uvs.empty() && !are_given(*out, t))
+      add_triangle(*builder, t, &sums);
+  if (sums.empty() && out->tangents.empty()) return;
+  charge_bytes(builder, (out->positions.size() - out->tangents.size()) * sizeof(PackedTangent), "the tangents");
+  out->tangents.resize(out->positions.size());
   for (const Triangle& t : out->triangles)
     for (std::uint32_t i = 0; i < 3 && needs_tangents(*out, t.material()); ++i) {
+      if (is_given(*out, t.vertex(i))) continue;
       const auto sum = sums.find(key_of(*out, t.vertex(i)));
       if (sum == sums.end() || (sum->second.mirrored && sum->second.unmirrored)) continue;
-      out->tangents[t.vertex(i)] = pack(normalize(sum->second.tangent));
+      out->tangents[t.vertex(i)] = pack(normalize(sum->second.tangent), 0);
     }
   for (const MovingMesh& mesh : out->moving_meshes)
     for (std::uint32_t i = 0; i < mesh.vertex_count; ++i) out->tangents[mesh.vertex_begin + i] = PackedTangent();

@@ -4,6 +4,7 @@
 
 #include "base/check.h"
 #include "base/limit_list.h"
+#include "brdf/clear_coat.h"
 #include "effect/effect_list.h"
 #include "effect/setting_list.h"
 #include "indirect/environment.h"
@@ -20,9 +21,17 @@ struct Census {
   std::uint32_t materials = 0, specular = 0, mirror = 0, transmitting = 0, absorbing = 0, masked = 0, blended = 0,
                 emissive = 0, unlit = 0, textured = 0, scattering = 0, one_sided = 0, reflecting = 0, diffuse = 0,
                 metallic_roughness = 0, bumpy = 0, occluded = 0, with_levels = 0, grained = 0, second_uv = 0,
-                second_uv_occlusion = 0;  // of the latter, only that of occlusion
+                second_uv_occlusion = 0,  // of the latter, only that of occlusion
+      coated = 0;
   std::uint32_t lights[3] = {0, 0, 0};
 };
+
+// Whether a texture of the material's clear coat has a property.
+template <class Property>
+bool any_of_coat(const Scene& scene, std::uint32_t material, Property property) {
+  const ClearCoat* coat = coat_of(scene, material);
+  return coat && (property(coat->strength_texture) || property(coat->roughness_texture) || property(coat->normal));
+}
 
 bool reads_levels(const Scene& scene, std::uint32_t material) {
   auto has_levels = [&](const TextureUse& use) {
@@ -31,6 +40,7 @@ bool reads_levels(const Scene& scene, std::uint32_t material) {
   const Material& m = scene.materials[material];
   if (has_levels(m.diffuse_texture) || has_levels(m.emission_texture)) return true;
   if (scene.grains.count && has_levels(scene.grains[material].texture)) return true;
+  if (any_of_coat(scene, material, has_levels)) return true;
   if (scene.material_maps.empty()) return false;
   const MaterialMaps& maps = scene.material_maps[material];
   return has_levels(maps.metallic_roughness) || has_levels(maps.specular) || has_levels(maps.specular_color) ||
@@ -43,6 +53,7 @@ bool reads_second(const Scene& scene, std::uint32_t material) {
   const Material& m = scene.materials[material];
   if (second(m.diffuse_texture) || second(m.emission_texture)) return true;
   if (scene.grains.count && second(scene.grains[material].texture)) return true;
+  if (any_of_coat(scene, material, second)) return true;
   if (scene.material_maps.empty()) return false;
   const MaterialMaps& maps = scene.material_maps[material];
   return second(maps.metallic_roughness) || second(maps.specular) || second(maps.specular_color);
@@ -60,11 +71,15 @@ Census take_census(const Scene& scene, const Settings& settings) {
     if (!(used[i / 32] >> i % 32 & 1)) continue;
     const Material m =
         scene.material_maps.count ? lobe_bounds(scene.materials[i], scene.material_maps[i]) : scene.materials[i];
+    const ClearCoat* coat = coat_of(scene, i);
+    const bool shines = coat && has_lobe(*coat);
+    bool is_bumpy = coat && coat->normal.texture != kNone;
     if (scene.material_maps.count) {
       const MaterialMaps& maps = scene.material_maps[i];
       c.metallic_roughness += has_lobe_map(maps);
-      c.bumpy += maps.normal.texture != kNone, c.occluded += maps.occlusion.texture != kNone;
+      is_bumpy |= maps.normal.texture != kNone, c.occluded += maps.occlusion.texture != kNone;
     }
+    c.bumpy += is_bumpy, c.coated += coat != nullptr;
     c.grained += !is_zero(m.specular) && has_grain(scene, i);
     c.with_levels += reads_levels(scene, i);
     if (reads_second(scene, i))
@@ -73,8 +88,8 @@ Census take_census(const Scene& scene, const Settings& settings) {
       c.second_uv_occlusion += reads_second_uvs(scene, scene.material_maps[i].occlusion);
     bool transmits = !is_zero(m.transmission);
     ++c.materials;
-    c.specular += !is_zero(m.specular);
-    c.mirror += !is_zero(m.mirror);
+    c.specular += !is_zero(m.specular) || shines;
+    c.mirror += !is_zero(m.mirror) || (coat && has_mirror(*coat));
     c.transmitting += transmits;
     c.absorbing += transmits && !m.thin && !is_zero(m.absorption);
     c.masked += m.alpha_mode == AlphaMode::mask;
@@ -82,10 +97,10 @@ Census take_census(const Scene& scene, const Settings& settings) {
     c.emissive += !is_zero(m.emission);
     c.unlit += m.unlit;
     c.textured += m.diffuse_texture.texture != kNone || m.emission_texture.texture != kNone;
-    c.reflecting += reflects_surroundings(m);
+    c.reflecting += reflects_surroundings(m) || shines;
     c.diffuse += !(m.unlit && shows_unlit) && !is_zero(m.diffuse);
     c.one_sided += !m.double_sided && !transmits;
-    c.scattering += !(m.unlit && shows_unlit) && (!is_zero(m.diffuse) || !is_zero(m.specular));
+    c.scattering += !(m.unlit && shows_unlit) && (!is_zero(m.diffuse) || !is_zero(m.specular) || shines);
   }
   for (const Light& light : scene.lights) ++c.lights[static_cast<int>(light.kind)];
   return c;
@@ -179,6 +194,7 @@ EffectPlan plan_effects(const Scene& scene, const Settings& settings) {
   w.set_by_materials(Effect::metallic_roughness, c.metallic_roughness, "have a metallic-roughness or specular texture");
   w.set_by_materials(Effect::normal_map, c.bumpy, "have a normal texture");
   w.set_by_materials(Effect::anisotropy, c.grained, "have a grain");
+  w.set_by_materials(Effect::clear_coat, c.coated, "have a clear coat");
   if (takes_levels(settings.texture_filter))
     w.set_by_materials(Effect::mip_map, c.with_levels, "have a texture with levels");
   else

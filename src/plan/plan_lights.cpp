@@ -8,7 +8,7 @@
 #include "base/check.h"
 #include "base/fmath.h"
 #include "base/limits.h"
-#include "brdf/brdf_list.h"
+#include "brdf/clear_coat.h"
 #include "indirect/environment.h"
 #include "plan/area_light.h"
 #include "scene/metallic_roughness.h"
@@ -166,6 +166,12 @@ void place_lights(Array<const Light> lights, Array<const Material> lamps, Array<
   frame->lights = {points.data, count};
 }
 
+// Upper bound of what a coat of strength 1 reflects of the surroundings.
+static float coat_glow_bound(const FrameData& frame, const Material& coat, bool lit_by_environment) {
+  if (lit_by_environment) return environment_bound(*frame.scene, coat, frame.mask);
+  return has(frame.mask, Effect::ambient_gloss) ? reflected_surroundings_bound(frame.scene->info, coat) : 0;
+}
+
 RadianceBounds radiance_bounds(const FrameData& frame) {
   const Scene& scene = *frame.scene;
   CHECK(scene.material_maps.empty() || scene.material_maps.count == scene.materials.count);
@@ -183,15 +189,19 @@ RadianceBounds radiance_bounds(const FrameData& frame) {
       own += environment_bound(scene, m, frame.mask);
     else if (has(frame.mask, Effect::ambient_gloss))
       own += reflected_surroundings_bound(scene.info, m);
+    const ClearCoat* coat = has(frame.mask, Effect::clear_coat) ? coat_of(scene, i) : nullptr;
+    if (coat) own += coat->strength * coat_glow_bound(frame, coat_bounds(*coat), lit_by_environment);
     if (own > glow) glow = own;
     float passes =
         max_component(m.mirror) + (is_zero(m.transmission) ? 0 : max_component(max(m.transmission, Vec3{1, 1, 1})));
+    if (coat) passes += coat->strength * coat_mirror_share(coat->roughness_low);
     if (passes > reflectance) reflectance = passes;
     float f = max_component(m.diffuse) / kPiF;
     CHECK_LT(m.brdf, kBrdfCount);
     const BrdfInfo* lobe = kBrdfList[m.brdf];
     if (has(frame.mask, Effect::anisotropy) && has_grain(scene, i)) lobe = lobe->with_grain;
     if (!is_zero(m.specular)) f = f * lobe->diffuse_max + max_component(lobe->peak(m));
+    if (coat && has_lobe(*coat)) f += coat->strength * max_component(kBrdfList[kGgx]->peak(coat_bounds(*coat)));
     if (f > scattering) scattering = f;
   }
   float irradiance = 0;

@@ -57,7 +57,8 @@ Vec3d value_in_model(const Reference& reference, const ReferenceSurface& s, cons
   Vec3d value = {0, 0, 0};
   const Material& m = lobes_of(s);
   if (reflects_surroundings(m))
-    value = glossy_lobe(s).exact_value(m, s.specular, {0, 0, 0}, s, to_viewer, to_light) * s.open;
+    value = glossy_lobe(s).exact_value(m, s.specular, {0, 0, 0}, s, to_viewer, to_light) * s.passes;
+  value = (value + coat_value(s, to_viewer, to_light)) * s.open;
   const Vec3d diffuse = s.diffuse * (1 / kPi);
   if (!has(frame.mask, Effect::environment_shadow) || is_zero(diffuse)) return value + diffuse * s.open;
   return value + diffuse * transmittance(reference.world, leave(frame, s, to_light, kInfinity), {kNone, kNone, true});
@@ -195,7 +196,13 @@ Vec3d environment_light_as_rendered(const Reference& reference, const ReferenceS
         is_zero(s.grain)
             ? reflected_environment(scene, lobes_of(s), specular, normal, way, irradiance)
             : reflected_along_grain(scene, lobes_of(s), specular, {normal, to_float(s.grain)}, way, irradiance);
-    sum += to_double(reflected) * s.open;
+    sum += to_double(reflected) * (s.open * s.passes);
+  }
+  if (s.coat_lobe > 0) {
+    const Vec3 normal = to_float(s.coat_normal), irradiance = environment_irradiance(scene.environment_info[0], normal);
+    const Vec3 reflected =
+        reflected_environment(scene, s.coat, s.coat.specular, normal, to_float(-to_viewer), irradiance);
+    sum += to_double(reflected) * (s.open * s.coat_lobe);
   }
   return sum;
 }

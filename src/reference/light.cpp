@@ -97,7 +97,9 @@ Vec3d area_light(const Reference& reference, const ReferenceOptions& options, co
   if (!(cosine > 0) || !(cos_light > 0) || is_zero(light.emission)) return {0, 0, 0};
   double density = emitter_density(reference, triangle) * distance * distance / cos_light;
   double weight = model || !goes_on ? 1 : power_heuristic(density, guided_density(s, to_viewer, direction));
-  Vec3d sum = lobe_value(s, to_viewer, direction) * light.emission * (cosine * weight / density);
+  // In the model, a coat over a lamp does not dim the light on other surfaces.
+  const Vec3d sent = model && light.passes > 0 ? light.emission / light.passes : light.emission;
+  Vec3d sum = lobe_value(s, to_viewer, direction) * sent * (cosine * weight / density);
   if (is_zero(sum)) return sum;
   ReferenceRay ray = leave(frame, s, direction, distance * (1 - 0x1p-40));
   return sum * transmittance(reference.world, ray, {triangle, model ? material : kNone, !model});

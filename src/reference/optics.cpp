@@ -92,8 +92,8 @@ double boundary_reflectance(double cos_i, double eta, double* cos_t) {
   return 0.5 * (s * s + p * p);
 }
 
-Vec3d mirrored(const Vec3d& direction, const ReferenceSurface& s) {
-  Vec3d d = direction - s.normal * (2 * dot(direction, s.normal));
+Vec3d mirrored(const Vec3d& direction, const ReferenceSurface& s, const Vec3d& normal) {
+  Vec3d d = direction - normal * (2 * dot(direction, normal));
   if (!(dot(d, s.geometric) > 0)) d = direction - s.geometric * (2 * dot(direction, s.geometric));
   return normalize(d);
 }

@@ -37,8 +37,9 @@ Vec3d medium_transmittance(const Scene& scene, const MediumStack& media, double 
 // eqs. 21]; *cos_t is the cosine of the refracted ray, 0 for total internal reflection.
 double boundary_reflectance(double cos_i, double eta, double* cos_t);
 
-// The mirror direction. If the shading normal would send the ray below the surface, the geometric normal is used.
-Vec3d mirrored(const Vec3d& direction, const ReferenceSurface& s);
+// The mirror direction. If the normal would send the ray below the surface, the geometric normal is used.
+Vec3d mirrored(const Vec3d& direction, const ReferenceSurface& s, const Vec3d& normal);
+inline Vec3d mirrored(const Vec3d& direction, const ReferenceSurface& s) { return mirrored(direction, s, s.normal); }
 
 // A ray at a glass boundary: the reflected fraction; the rest is tinted, refracted and in other bodies.
 struct ReferenceBoundary {

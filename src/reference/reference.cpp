@@ -65,9 +65,8 @@ bool scatter(const Reference& reference, const ReferenceOptions& options, const 
   const Material& m = *s.material;
   Vec3d mirror = s.mirror, to_viewer = -ray->direction;
   double mirror_share = max_component(mirror), glass_share = is_zero(m.transmission) ? 0 : 1, lobe_share = 0;
-  if (options.transport == Transport::physical)
-    lobe_share = max_component(s.diffuse) + static_cast<double>(max_component(lobes_of(s).specular));
-  double total = mirror_share + glass_share + lobe_share;
+  if (options.transport == Transport::physical) lobe_share = lobe_weight(s, to_viewer);
+  double total = mirror_share + glass_share + lobe_share + s.coat_mirror;
   if (!(total > 0)) return false;
   double choice = samples->choice() * total;  // rescaled after the choice, it is uniform again
   path->worth *= std::fmin(1, total);
@@ -76,10 +75,13 @@ bool scatter(const Reference& reference, const ReferenceOptions& options, const 
   if (choice < mirror_share) {
     path->weight *= mirror * (total / mirror_share);
     direction = mirrored(ray->direction, s);
-  } else if (choice < mirror_share + glass_share) {
-    path->weight = path->weight * (total / glass_share);
+  } else if ((choice -= mirror_share) < s.coat_mirror) {
+    path->weight = path->weight * total;
+    direction = mirrored(ray->direction, s, s.coat_normal);
+  } else if ((choice -= s.coat_mirror) < glass_share) {
+    path->weight = path->weight * (s.passes * total / glass_share);
     ReferenceBoundary boundary = meet_boundary(frame, s, contact, ray->direction, path->media);
-    if ((choice - mirror_share) / glass_share < boundary.reflectance) {
+    if (choice / glass_share < boundary.reflectance) {
       direction = mirrored(ray->direction, s);
     } else {
       direction = boundary.direction;
@@ -87,7 +89,7 @@ bool scatter(const Reference& reference, const ReferenceOptions& options, const 
       path->media = boundary.beyond;
     }
   } else {
-    choice = (choice - mirror_share - glass_share) / lobe_share;
+    choice = (choice - glass_share) / lobe_share;
     if (!sample_guided(s, to_viewer, choice, samples->direction(), &direction)) return false;
     path->density = guided_density(s, to_viewer, direction);
     if (!(path->density > 0)) return false;
@@ -135,7 +137,7 @@ Vec3d trace_path(const Reference& reference, const ReferenceOptions& options, Re
     sum += exact_indirect(*frame.scene, path.weight * s.diffuse, model) * s.open;
     if (model) sum += path.weight * reflected_surroundings(frame, s, -ray.direction);
     if (!model) s.cell = find_cell(reference.guide, s.point);
-    if (!is_zero(s.diffuse) || !is_zero(lobes_of(s).specular))
+    if (lobe_weight(s, -ray.direction) > 0)
       sum +=
           path.weight * sample_direct_light(reference, options, s, -ray.direction, depth < options.depth_max, samples);
     bool is_last = depth >= options.depth_max;

@@ -37,15 +37,16 @@ Vec3d shade(const Reference& reference, const ReferenceRay& ray, const Reference
   Vec3d sum = s.emission + exact_indirect_of(*frame.scene, s.diffuse, frame.mask) * open;
   sum += reflected_surroundings(frame, s, -ray.direction) +
          environment_light_as_rendered(reference, s, -ray.direction, branch.depth == 0);
-  if (!is_zero(s.diffuse) || !is_zero(lobes_of(s).specular))
-    sum += sum_light_points(reference, s, -ray.direction, true);
+  if (lobe_weight(s, -ray.direction) > 0) sum += sum_light_points(reference, s, -ray.direction, true);
   Vec3d turned = {0, 0, 0};
   if (!is_zero(lobes_of(s).mirror)) turned += s.mirror;
   if (!is_zero(m.transmission)) {
     ReferenceBoundary b = meet_boundary(frame, s, contact, ray.direction, branch.media);
-    turned += Vec3d{b.reflectance, b.reflectance, b.reflectance};
-    sum += spawn(reference, s, b.direction, b.tint * (1 - b.reflectance), branch, b.beyond);
+    turned += Vec3d{b.reflectance, b.reflectance, b.reflectance} * s.passes;
+    sum += spawn(reference, s, b.direction, b.tint * ((1 - b.reflectance) * s.passes), branch, b.beyond);
   }
+  const Vec3d by_coat = {s.coat_mirror, s.coat_mirror, s.coat_mirror};
+  sum += spawn(reference, s, mirrored(ray.direction, s, s.coat_normal), by_coat, branch, branch.media);
   if (!is_zero(turned)) sum += spawn(reference, s, mirrored(ray.direction, s), turned, branch, branch.media);
   return sum;
 }

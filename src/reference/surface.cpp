@@ -1,7 +1,7 @@
 #include "reference/surface.h"
 
 #include "base/fmath.h"
-#include "brdf/brdf_list.h"
+#include "brdf/clear_coat.h"
 #include "brdf/directions.h"
 #include "brdf/microfacet.h"
 #include "indirect/environment.h"
@@ -58,19 +58,43 @@ void apply_metallic_roughness(const FrameData& frame, const MaterialMaps& maps, 
   s->mapped.mirror = to_float(s->mirror);
 }
 
-// Probability of sampling the glossy lobe rather than the diffuse one.
-double glossy_share(const ReferenceSurface& s) {
-  double glossy = static_cast<double>(max_component(lobes_of(s).specular)), diffuse = max_component(s.diffuse);
-  return glossy > 0 ? glossy / (glossy + diffuse) : 0;
+// Probabilities of sampling the glossy lobe and the coat's rather than the diffuse one.
+struct LobeShares {
+  double glossy = 0, coat = 0;
+};
+double glossy_weight(const ReferenceSurface& s) { return static_cast<double>(max_component(lobes_of(s).specular)); }
+double coat_weight(const ReferenceSurface& s, const Vec3d& to_viewer) {
+  return s.coat_lobe * coat_fresnel(dot(s.coat_normal, to_viewer));
 }
+LobeShares lobe_shares(const ReferenceSurface& s, const Vec3d& to_viewer) {
+  const double total = lobe_weight(s, to_viewer);
+  if (!(total > 0)) return {};
+  return {glossy_weight(s) / total, coat_weight(s, to_viewer) / total};
+}
+LobeFrameD coat_frame(const ReferenceSurface& s) { return {s.coat_normal, {0, 0, 0}}; }
 
-// The frame of maps, from ∂P/∂u and ∂P/∂v, which solve e = u ∂P/∂u + v ∂P/∂v for both edges; shade/normal_map.h has the
-// rules. False if there is none.
+// The frame of maps, from ∂P/∂u and ∂P/∂v, which solve e = u ∂P/∂u + v ∂P/∂v for both edges, or as the vertices have
+// it; shade/normal_map.h has the rules. False if there is none.
 bool map_frame(const FrameData& frame, const Vec3d* corner, const ReferenceSurface& s, Vec3d* tangent,
                Vec3d* bitangent) {
   const Scene& scene = *frame.scene;
-  if (scene.uvs.empty()) return false;
   const Triangle& t = scene.triangles[s.triangle];
+  const Vec3d n = s.normal * (s.front ? 1.0 : -1.0);
+  Vec3d at_vertex[3], along = {0, 0, 0};
+  int handedness = 0;
+  bool at_vertices = scene.tangents.count > 0;
+  for (std::uint32_t i = 0; i < 3 && at_vertices; ++i) {
+    at_vertex[i] = to_double(unpacked(scene.tangents[t.vertex(i)]));
+    handedness += scene.tangents[t.vertex(i)].handedness;
+    at_vertices = !is_zero(at_vertex[i]);
+  }
+  if (at_vertices) along = at_vertex[0] * (1 - s.u - s.v) + at_vertex[1] * s.u + at_vertex[2] * s.v;
+  if (at_vertices && handedness != 0) {
+    *tangent = normalize(along - n * dot(n, along)), *bitangent = cross(n, *tangent);
+    if (handedness < 0) *bitangent = -*bitangent;
+    return !is_zero(*tangent);
+  }
+  if (scene.uvs.empty()) return false;
   Vec2 at[3];
   for (std::uint32_t i = 0; i < 3; ++i) at[i] = scene.uvs[t.vertex(i)];
   const double u1 = static_cast<double>(at[1].x - at[0].x), v1 = static_cast<double>(at[1].y - at[0].y);
@@ -79,12 +103,7 @@ bool map_frame(const FrameData& frame, const Vec3d* corner, const ReferenceSurfa
   if (determinant == 0) return false;
   const Vec3d e1 = corner[1] - corner[0], e2 = corner[2] - corner[0];
   const Vec3d by_u = (e1 * v2 - e2 * v1) * (1 / determinant), by_v = (e2 * u1 - e1 * u2) * (1 / determinant);
-  const Vec3d n = s.normal * (s.front ? 1.0 : -1.0);
-  Vec3d along = by_u, at_vertex[3];
-  for (std::uint32_t i = 0; i < 3 && scene.tangents.count; ++i)
-    at_vertex[i] = to_double(unpacked(scene.tangents[t.vertex(i)]));
-  if (scene.tangents.count && !is_zero(at_vertex[0]) && !is_zero(at_vertex[1]) && !is_zero(at_vertex[2]))
-    along = at_vertex[0] * (1 - s.u - s.v) + at_vertex[1] * s.u + at_vertex[2] * s.v;
+  if (!at_vertices) along = by_u;
   const Vec3d own = normalize(by_u - n * dot(n, by_u)), other = cross(n, own);
   *tangent = normalize(along - n * dot(n, along)), *bitangent = cross(n, *tangent);
   if (dot(other, by_v) > 0) *bitangent = -*bitangent;
@@ -92,11 +111,11 @@ bool map_frame(const FrameData& frame, const Vec3d* corner, const ReferenceSurfa
 }
 
 // The normal of a normal texture (sec. 3.9.3).
-Vec3d normal_of_map(const FrameData& frame, const MaterialMaps& maps, const Vec3d* corner, const Vec3d& direction,
-                    const ReferenceSurface& s) {
-  Vec3d numbers = numbers_at(frame, maps.normal, s);
+Vec3d normal_of_map(const FrameData& frame, const TextureUse& map, float scale, const Vec3d* corner,
+                    const Vec3d& direction, const ReferenceSurface& s) {
+  Vec3d numbers = numbers_at(frame, map, s);
   for (int c = 0; c < 3; ++c) numbers[c] = std::fmax((numbers[c] - 128) / 127, -1);
-  numbers.x *= static_cast<double>(maps.normal_scale), numbers.y *= static_cast<double>(maps.normal_scale);
+  numbers.x *= static_cast<double>(scale), numbers.y *= static_cast<double>(scale);
   Vec3d tangent, bitangent;
   if ((numbers.x == 0 && numbers.y == 0) || !map_frame(frame, corner, s, &tangent, &bitangent)) return s.normal;
   const double side = s.front ? 1 : -1;
@@ -104,6 +123,31 @@ Vec3d normal_of_map(const FrameData& frame, const MaterialMaps& maps, const Vec3
   const Vec3d way = normalize(direction);
   if (dot(mapped, way) > 0) mapped = normalize(mapped - way * dot(mapped, way));
   return is_zero(mapped) ? s.normal : mapped;
+}
+
+// KHR_materials_clearcoat; `unmapped` is the normal at the vertices.
+void put_coat_on(const FrameData& frame, const Vec3d* corner, const Vec3d& direction, const Vec3d& unmapped,
+                 ReferenceSurface* s) {
+  s->passes = 1, s->coat_lobe = s->coat_mirror = 0, s->coat_normal = unmapped;
+  const ClearCoat* coat = coat_of(*frame.scene, frame.scene->triangles[s->triangle].material());
+  if (!coat || !has(frame.mask, Effect::clear_coat)) return;
+  auto texel = [&](const TextureUse& use, int channel) {
+    return use.texture == kNone ? 1 : numbers_at(frame, use, *s)[channel] / 255;
+  };
+  const double strength = static_cast<double>(coat->strength) * texel(coat->strength_texture, 0);
+  const double roughness = std::fmax(static_cast<double>(coat->roughness) * texel(coat->roughness_texture, 1),
+                                     static_cast<double>(coat->roughness_low));
+  if (coat->normal.texture != kNone && has(frame.mask, Effect::normal_map)) {
+    ReferenceSurface bare = *s;
+    bare.normal = unmapped;
+    s->coat_normal = normal_of_map(frame, coat->normal, coat->normal_scale, corner, direction, bare);
+  }
+  const double fresnel = coat_fresnel(dot(s->coat_normal, normalize(direction)));
+  s->passes = 1 - strength * fresnel;
+  s->coat = coat_lobe(static_cast<float>(roughness));
+  if (has(frame.mask, Effect::specular) && !is_zero(s->coat.specular)) s->coat_lobe = strength;
+  if (has(frame.mask, Effect::mirror)) s->coat_mirror = strength * fresnel * coat_mirror_share(roughness);
+  s->diffuse = s->diffuse * s->passes, s->mirror = s->mirror * s->passes, s->emission = s->emission * s->passes;
 }
 
 // KHR_materials_anisotropy.
@@ -161,10 +205,11 @@ ReferenceSurface reference_surface(const FrameData& frame, const ReferenceHit& h
   s.diffuse = to_double(m.diffuse) * tint;
   s.specular = tinted(m.specular, m.specular_tinted), s.mirror = tinted(m.mirror, m.mirror_tinted);
   s.is_mapped = false, s.open = 1;
+  const Vec3d unmapped = s.normal;
   if (scene.material_maps.count) {
     const MaterialMaps& maps = scene.material_maps[t.material()];
     if (has(frame.mask, Effect::normal_map) && maps.normal.texture != kNone)
-      s.normal = normal_of_map(frame, maps, corner, direction, s);
+      s.normal = normal_of_map(frame, maps.normal, maps.normal_scale, corner, direction, s);
     if (has(frame.mask, Effect::occlusion) && maps.occlusion.texture != kNone) {
       const double red = numbers_at(frame, maps.occlusion, s).x;
       s.open = 1 - static_cast<double>(maps.occlusion_strength) * (1 - red / 255);
@@ -178,6 +223,7 @@ ReferenceSurface reference_surface(const FrameData& frame, const ReferenceHit& h
   s.emission = {0, 0, 0};
   if (!is_zero(m.emission) && (s.front || m.double_sided))
     s.emission = to_double(m.emission) * texel(m.emission_texture);
+  put_coat_on(frame, corner, direction, unmapped, &s);
   return s;
 }
 
@@ -198,33 +244,60 @@ ReferenceRay leave(const FrameData& frame, const ReferenceSurface& s, const Vec3
 
 Vec3d reflected_surroundings(const FrameData& frame, const ReferenceSurface& s, const Vec3d& to_viewer) {
   if (environment_lights(*frame.scene, frame.mask, frame.settings.indirect)) return {0, 0, 0};
-  if (!has(frame.mask, Effect::ambient_gloss) || !reflects_surroundings(lobes_of(s))) return {0, 0, 0};
+  if (!has(frame.mask, Effect::ambient_gloss)) return {0, 0, 0};
+  Vec3d by_coat = {0, 0, 0};
+  if (s.coat_lobe > 0) {
+    const float cosine = static_cast<float>(dot(s.coat_normal, to_viewer));
+    const Vec3 light = reflected_surroundings(frame.scene->info, s.coat, s.coat.specular, cosine);
+    by_coat = to_double(light) * (s.coat_lobe * s.open);
+  }
+  if (!reflects_surroundings(lobes_of(s))) return by_coat;
   const Vec3 specular = to_float(s.specular);
   const float cosine = static_cast<float>(dot(s.normal, to_viewer));
   const Material m = is_zero(s.grain) ? lobes_of(s) : evened(lobes_of(s), {to_float(s.normal), to_float(s.grain)});
-  return s.open * to_double(reflected_surroundings(frame.scene->info, m, specular, cosine));
+  return by_coat + s.open * s.passes * to_double(reflected_surroundings(frame.scene->info, m, specular, cosine));
+}
+
+Vec3d coat_value(const ReferenceSurface& s, const Vec3d& to_viewer, const Vec3d& to_light) {
+  const double cosine = dot(s.normal, to_light), at_coat = dot(s.coat_normal, to_light);
+  if (!(s.coat_lobe > 0) || !(cosine > 0) || !(at_coat > 0)) return {0, 0, 0};
+  return kBrdfList[s.coat.brdf]->exact_value(s.coat, to_double(s.coat.specular), {0, 0, 0}, coat_frame(s), to_viewer,
+                                             to_light) *
+         (s.coat_lobe * at_coat / cosine);
+}
+
+double lobe_weight(const ReferenceSurface& s, const Vec3d& to_viewer) {
+  return max_component(s.diffuse) + glossy_weight(s) + coat_weight(s, to_viewer);
 }
 
 Vec3d lobe_value(const ReferenceSurface& s, const Vec3d& to_viewer, const Vec3d& to_light) {
   Vec3d value = s.diffuse * (1 / kPi);
-  if (!is_zero(lobes_of(s).specular))
-    value = glossy_lobe(s).exact_value(lobes_of(s), s.specular, value, s, to_viewer, to_light);
-  return value;
+  if (!is_zero(lobes_of(s).specular) && s.passes > 0)
+    value = glossy_lobe(s).exact_value(lobes_of(s), s.specular, value / s.passes, s, to_viewer, to_light) * s.passes;
+  return value + coat_value(s, to_viewer, to_light);
 }
 
 double lobe_density(const ReferenceSurface& s, const Vec3d& to_viewer, const Vec3d& to_light) {
-  double cosine = dot(s.normal, to_light), share = glossy_share(s);
-  if (!(cosine > 0) || (is_zero(s.diffuse) && share == 0)) return 0;
-  double glossy = share > 0 ? glossy_lobe(s).density(lobes_of(s), s, to_viewer, to_light) : 0;
-  return (1 - share) * cosine / kPi + share * glossy;
+  const double cosine = dot(s.normal, to_light);
+  const LobeShares share = lobe_shares(s, to_viewer);
+  if (!(cosine > 0) || !(lobe_weight(s, to_viewer) > 0)) return 0;
+  double density = (1 - share.glossy - share.coat) * cosine / kPi;
+  if (share.glossy > 0) density += share.glossy * glossy_lobe(s).density(lobes_of(s), s, to_viewer, to_light);
+  if (share.coat > 0)
+    density += share.coat * kBrdfList[s.coat.brdf]->density(s.coat, coat_frame(s), to_viewer, to_light);
+  return density;
 }
 
 bool sample_lobes(const ReferenceSurface& s, const Vec3d& to_viewer, double choice, const Pair& pair,
                   Vec3d* direction) {
-  double share = glossy_share(s);
-  if (is_zero(s.diffuse) && share == 0) return false;
-  *direction = choice < share ? glossy_lobe(s).sample(lobes_of(s), s, to_viewer, pair.u, pair.v)
-                              : power_cosine_direction(s.normal, 1, pair.u, pair.v);
+  const LobeShares share = lobe_shares(s, to_viewer);
+  if (!(lobe_weight(s, to_viewer) > 0)) return false;
+  if (choice < share.glossy)
+    *direction = glossy_lobe(s).sample(lobes_of(s), s, to_viewer, pair.u, pair.v);
+  else if (choice < share.glossy + share.coat)
+    *direction = kBrdfList[s.coat.brdf]->sample(s.coat, coat_frame(s), to_viewer, pair.u, pair.v);
+  else
+    *direction = power_cosine_direction(s.normal, 1, pair.u, pair.v);
   return dot(*direction, s.normal) > 0;
 }
 

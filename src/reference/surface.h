@@ -19,7 +19,11 @@ struct ReferenceSurface : LobeFrameD {
   const Material* material;
   Material mapped;  // the material with the lobes that its maps give it here, if is_mapped
   bool is_mapped;
-  double open;                          // what an occlusion map leaves of ambient light
+  double open;  // what an occlusion map leaves of ambient light
+  // The clear coat, as SurfaceCoat has it. Diffuse, mirror and emission are what it lets through; `specular` is not.
+  double passes = 1, coat_lobe = 0, coat_mirror = 0;
+  Vec3d coat_normal;
+  Material coat;                        // its lobe, set if it has one
   const ReferenceCell* cell = nullptr;  // of the guide, if it has one here
 };
 
@@ -38,11 +42,17 @@ inline const BrdfInfo& glossy_lobe(const ReferenceSurface& s) {
   return lobe->with_grain && !is_zero(s.grain) ? *lobe->with_grain : *lobe;
 }
 
+// The coat's lobe × its cosine, over the cosine of the surface.
+Vec3d coat_value(const ReferenceSurface& s, const Vec3d& to_viewer, const Vec3d& to_light);
+
+// What the lobes reflect at most, about; 0: there are none.
+double lobe_weight(const ReferenceSurface& s, const Vec3d& to_viewer);
+
 // Radiance of the surroundings that the glossy lobe reflects, if the frame's plan has Effect::ambient_gloss and
 // no environment stands in.
 Vec3d reflected_surroundings(const FrameData& frame, const ReferenceSurface& s, const Vec3d& to_viewer);
 
-// Value of the diffuse plus the glossy lobe, 1/sr.
+// Value of the diffuse plus the glossy lobe under the coat, plus the coat's, 1/sr.
 Vec3d lobe_value(const ReferenceSurface& s, const Vec3d& to_viewer, const Vec3d& to_light);
 // Density of sample_lobes(), 1/sr; 0 without lobes.
 double lobe_density(const ReferenceSurface& s, const Vec3d& to_viewer, const Vec3d& to_light);

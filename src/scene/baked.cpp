@@ -90,8 +90,9 @@ void for_each_array(SceneType& scene, Visit visit) {
   visit("grains", scene.grains);
   visit("tangents", scene.tangents);
   visit("second_uvs", scene.second_uvs);
+  visit("clear_coats", scene.clear_coats);
 }
-constexpr std::uint32_t kArrayCount = 37;
+constexpr std::uint32_t kArrayCount = 38;
 constexpr std::uint32_t kSectionCount = 1 + kArrayCount;  // kind 0 is SceneInfo
 
 constexpr std::uint64_t aligned(std::uint64_t offset) {
@@ -102,9 +103,10 @@ constexpr std::uint64_t first_offset(std::uint32_t section_count) {
 }
 // Older files lack the last arrays.
 constexpr std::uint32_t section_count_of(std::uint32_t version) {
-  return version < 8    ? kSectionCount - 5
-         : version < 9  ? kSectionCount - 3
-         : version < 10 ? kSectionCount - 1
+  return version < 8    ? kSectionCount - 6
+         : version < 9  ? kSectionCount - 4
+         : version < 10 ? kSectionCount - 2
+         : version < 11 ? kSectionCount - 1
                         : kSectionCount;
 }
 

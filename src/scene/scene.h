@@ -130,9 +130,20 @@ struct Grain {
   TextureUse texture;
 };
 
-// A unit vector in 127ths; zero: none.
+// A clear varnish over a material, see brdf/clear_coat.h. Textures have numbers for texels.
+struct ClearCoat {
+  float strength = 0;       // × R; 0: none
+  float roughness = 0;      // × G
+  float roughness_low = 0;  // the least that this amounts to; lower values are moved to it, so that bounds hold
+  TextureUse strength_texture, roughness_texture;
+  TextureUse normal;  // as MaterialMaps::normal, which the coat does not follow; none: the normal at the vertices
+  float normal_scale = 1;
+};
+
+// A unit vector in 127ths; zero: none. Handedness: above 0, the bitangent is normal × tangent, below 0 the opposite; 0:
+// as the first texture coordinates have it, against ∂P/∂v.
 struct PackedTangent {
-  std::int8_t x = 0, y = 0, z = 0, reserved = 0;
+  std::int8_t x = 0, y = 0, z = 0, handedness = 0;
 };
 inline Vec3 unpacked(const PackedTangent& t) {
   return {static_cast<float>(t.x), static_cast<float>(t.y), static_cast<float>(t.z)};  // × 127
@@ -265,7 +276,8 @@ struct Scene {
   Array<const Grain> grains;                      // one per material, or empty
   // One per vertex, or empty: the tangent of the frame of maps; none: the triangle's own, see shade/normal_map.h.
   Array<const PackedTangent> tangents;
-  Array<const Vec2> second_uvs;  // one per vertex, or empty: coordinates of the textures of that set
+  Array<const Vec2> second_uvs;        // one per vertex, or empty: coordinates of the textures of that set
+  Array<const ClearCoat> clear_coats;  // one per material, or empty
 };
 
 inline bool is_animated(const Scene& scene) {

@@ -79,6 +79,35 @@ Status validate_grains(const Scene& scene) {
   return success();
 }
 
+static Status validate_coat(const Scene& scene, std::uint32_t index) {
+  CHECK_LT(index, scene.clear_coats.count);
+  const ClearCoat& coat = scene.clear_coats[index];
+  const FieldRange fields[] = {
+      {"strength", coat.strength, 0, 1},
+      {"roughness", coat.roughness, 0, 1},
+      {"roughness_low", coat.roughness_low, 0, coat.roughness},
+      {"normal_scale", coat.normal_scale, -kNormalScaleMax, kNormalScaleMax},
+  };
+  RETURN_IF_ERROR(check_fields("clear_coats", index, fields));
+  RETURN_IF_ERROR(check_texture_use("clear_coats", "strength_texture", index, coat.strength_texture, scene));
+  RETURN_IF_ERROR(check_texture_use("clear_coats", "roughness_texture", index, coat.roughness_texture, scene));
+  RETURN_IF_ERROR(check_texture_use("clear_coats", "normal", index, coat.normal, scene));
+  if (coat.normal.texture != kNone && scene.textures[coat.normal.texture].uv_set > 0)
+    return failure("clear_coats[%u].normal reads second_uvs, its frame is that of uvs", index);
+  if (coat.roughness_texture.texture == kNone && coat.roughness_low != coat.roughness)
+    return failure("clear_coats[%u].roughness_low is %g without a texture, it must be the roughness, %g", index,
+                   static_cast<double>(coat.roughness_low), static_cast<double>(coat.roughness));
+  if (coat.strength > 0 && scene.materials[index].unlit)
+    return failure("clear_coats[%u] coats materials[%u], which is unlit", index, index);
+  return success();
+}
+
+Status validate_clear_coats(const Scene& scene) {
+  RETURN_IF_ERROR(check_per_material("clear_coats", scene.clear_coats.count, scene));
+  for (std::uint32_t i = 0; i < scene.clear_coats.count; ++i) RETURN_IF_ERROR(validate_coat(scene, i));
+  return success();
+}
+
 Status validate_material_maps(const Scene& scene) {
   RETURN_IF_ERROR(check_per_material("material_maps", scene.material_maps.count, scene));
   for (std::uint32_t i = 0; i < scene.material_maps.count; ++i) RETURN_IF_ERROR(validate_maps(scene, i));

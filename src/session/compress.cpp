@@ -41,6 +41,10 @@ std::map<std::uint32_t, Uses> find_uses(const Scene& scene) {
     note(maps.occlusion, &Uses::red);
   }
   for (const Grain& grain : scene.grains) note(grain.texture, &Uses::grain);
+  for (const ClearCoat& coat : scene.clear_coats) {
+    note(coat.strength_texture, &Uses::red), note(coat.roughness_texture, &Uses::green_blue);
+    note(coat.normal, &Uses::normal);
+  }
   return uses;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/check.h"
+#include "brdf/clear_coat.h"
 #include "shade/contact.h"
 
 namespace pocketray {
@@ -39,8 +40,11 @@ bool is_same_side(const FrameData& frame, const Vec3& a, const Vec3& b) {
 
 bool has_texture(const Scene& scene, const Material& m) {
   if (m.diffuse_texture.texture != kNone || m.emission_texture.texture != kNone) return true;
+  const auto index = static_cast<std::uint32_t>(&m - scene.materials.data);
+  if (const ClearCoat* coat = coat_of(scene, index))
+    for (const TextureUse* use : {&coat->strength_texture, &coat->roughness_texture, &coat->normal})
+      if (use->texture != kNone) return true;
   if (scene.material_maps.empty()) return false;
-  const auto index = static_cast<std::size_t>(&m - scene.materials.data);
   CHECK_LT(index, scene.material_maps.count);
   const MaterialMaps& maps = scene.material_maps[index];
   for (const TextureUse* use :
@@ -74,6 +78,7 @@ bool has_smooth_light(const FrameData& frame, const Surface& s) {
   const Material& m = *s.material;
   if (!is_zero(m.mirror) || !is_zero(m.transmission) || m.alpha_mode != AlphaMode::opaque) return false;
   if (has_grain_texture(*frame.scene, m)) return false;
+  if (has(frame.mask, Effect::clear_coat) && s.coat.mirror > 0) return false;
   return !culls(m, s.front, frame.mask) && frame.eye_media.depth == 0;
 }
 

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "brdf/brdf_list.h"
+#include "shade/clear_coat.h"
 #include "shade/polygon_light.h"
 #include "shade/shadow.h"
 
@@ -22,6 +23,7 @@ struct LitSurface {
 // What direct light depends on.
 constexpr EffectMask kDirectEffects =
     bit(Effect::shadow) | bit(Effect::specular) | bit(Effect::metallic_roughness) | kPassageEffects;
+static_assert((kPassageEffects & bit(Effect::clear_coat)) != 0, "coats change lobes");
 
 // The value of all lobes for light from a direction.
 template <EffectMask mask>
@@ -33,10 +35,22 @@ inline Vec3 lobe_value(const FrameData& frame, const LitSurface& to, const Vec3&
       Vec3 specular = reflectance_at(to.surface, m.specular, m.specular_tinted);
       const BrdfInfo* lobe = kBrdfList[m.brdf];
       if constexpr (has(mask, Effect::metallic_roughness)) lobe = &lobe_at(frame, to.surface, m);
+      if constexpr (has(mask, Effect::clear_coat))
+        return value_under_coat(*lobe, m, specular, to.diffuse, to.surface, to.to_viewer, direction);
       return lobe->value(m, specular, to.diffuse, to.surface, to.to_viewer, direction);
     }
   }
   return to.diffuse;
+}
+
+// The light that leaves a surface for light of that irradiance on a surface that faces it.
+template <EffectMask mask>
+inline Vec3 reflected_light(const FrameData& frame, const LitSurface& to, const Vec3& direction, const Vec3& irradiance,
+                            float cosine) {
+  const Vec3 light_out = lobe_value<mask>(frame, to, direction) * irradiance * cosine;
+  if constexpr (has(mask, Effect::clear_coat))
+    return light_out + irradiance * coat_reflection(to.surface, to.to_viewer, direction);
+  return light_out;
 }
 
 // Adds the light of frame.lights[i], one of the run's.
@@ -56,7 +70,7 @@ template <EffectMask mask>
   }
   float cosine = dot(s.normal, sample.direction);
   if (!has(mask, Effect::shadow) && is_below(s, sample.direction)) return;
-  Vec3 light_out = lobe_value<mask>(frame, to, sample.direction) * sample.irradiance * cosine;
+  Vec3 light_out = reflected_light<mask>(frame, to, sample.direction, sample.irradiance, cosine);
   float bound = max_component(light_out * to.weight);
   if (!(bound > 0)) return;
   if constexpr (has(mask, Effect::shadow)) {
@@ -85,6 +99,10 @@ template <EffectMask mask>
     all += share;
     if (view.highest > 0) highest = std::max(highest, dot(s.normal, sample.to_light) * polygon.scale);
     Vec3 light_out = lobe_value<mask>(frame, to, sample.direction) * share;
+    if constexpr (has(mask, Effect::clear_coat)) {
+      const float coat = max_component(sample.irradiance) * coat_reflection(s, to.to_viewer, sample.direction);
+      light_out += Vec3{coat, coat, coat};
+    }
     if (!(max_component(light_out * to.weight) > 0)) continue;
     if constexpr (has(mask, Effect::shadow)) {
       light_out *= shadow<mask>(tracer, s, run, i, &sample, to.at_first_hit);
@@ -161,7 +179,8 @@ template <EffectMask mask>
     }
     const Vec3 irradiance = polygon_irradiance(polygon, view);
     if (!(max_component(irradiance) > 0)) continue;
-    if (!(has(mask, Effect::specular) && !is_zero(to.material.specular))) {
+    if (!(has(mask, Effect::specular) && !is_zero(to.material.specular)) &&
+        !(has(mask, Effect::clear_coat) && s.coat.lobe > 0)) {
       const Vec3 light_out = to.diffuse * irradiance;
       const float bound = max_component(light_out * to.weight);
       if (!(bound > 0)) continue;

@@ -5,6 +5,7 @@
 #include "base/check.h"
 #include "effect/effect_probe.h"
 #include "scene/metallic_roughness.h"
+#include "shade/clear_coat.h"
 #include "shade/instantiate.h"
 #include "shade/normal_map.h"
 #include "shade/texture.h"
@@ -66,9 +67,9 @@ float openness(const FrameData& frame, const MaterialMaps& maps, const Surface& 
   return 1 + maps.occlusion_strength * (open - 1);
 }
 
-// Whether the plan has the effect. Instances with anisotropy or two sets of texture coordinates hold the code of all
-// maps.
-constexpr EffectMask kHoldAll = bit(Effect::anisotropy) | bit(Effect::second_uv);
+// Whether the plan has the effect. Instances with anisotropy, two sets of texture coordinates or clear coats hold the
+// code of all maps.
+constexpr EffectMask kHoldAll = bit(Effect::anisotropy) | bit(Effect::second_uv) | bit(Effect::clear_coat);
 template <EffectMask mask>
 bool takes_part(const FrameData& frame, Effect effect) {
   return !(mask & kHoldAll & kEffectsBuilt) || has(frame.mask, effect);
@@ -80,11 +81,12 @@ void mapped_surface(const FrameData& frame, const Ray& ray, const Hit& hit, Surf
   const Scene& scene = *frame.scene;
   float open = 1;
   LookUp last;
+  const Vec3 unmapped = s->normal;
   if (const MaterialMaps* maps = maps_of(scene, *s)) {
     const Vec2 uv = scene.uvs.count ? hit_uv(scene, hit.triangle, hit.u, hit.v) : Vec2{0, 0};
     if constexpr (has(mask, Effect::normal_map)) {
       if (maps->normal.texture != kNone && takes_part<mask>(frame, Effect::normal_map)) {
-        s->normal = mapped_normal(frame, *maps, numbers_of<mask>(frame, maps->normal, *s, uv), ray, *s);
+        s->normal = mapped_normal(frame, maps->normal_scale, numbers_of<mask>(frame, maps->normal, *s, uv), ray, *s);
       }
     }
     if constexpr (has(mask, Effect::metallic_roughness)) {
@@ -111,9 +113,14 @@ void mapped_surface(const FrameData& frame, const Ray& ray, const Hit& hit, Surf
     const SurroundingsFunction surroundings = first ? frame.first_surroundings : frame.surroundings;
     s->glow += surroundings(frame, ray, lobes_at(frame, *s, &mapped), *s) * open;
   }
+  if constexpr (has(mask, Effect::clear_coat)) {
+    if (!has(frame.mask, Effect::clear_coat)) return;
+    find_coat(frame, ray, unmapped, s);
+    if (s->coat.passes < 1) add_coat(frame, ray, open, s);
+  }
 }
 
-constexpr EffectMask kOneSetEffects = kMapEffects & ~bit(Effect::second_uv);
+constexpr EffectMask kOneSetEffects = kMapEffects & ~bit(Effect::second_uv) & ~bit(Effect::clear_coat);
 template <bool first>
 struct MapsPart {
   using Function = SurfaceFunction;
@@ -127,8 +134,9 @@ struct MapsPart {
 
 template <bool first>
 SurfaceFunction find_mapped_surface(EffectMask mask) {
-  if constexpr (has(kAllEffects, Effect::second_uv))
-    if (has(mask, Effect::second_uv)) return mapped_surface<kMapEffects, first>;
+  constexpr EffectMask kFew = bit(Effect::second_uv) | bit(Effect::clear_coat);
+  if constexpr ((kFew & kEffectsBuilt) != 0)
+    if (mask & kFew & kEffectsBuilt) return mapped_surface<kMapEffects, first>;
   return Instantiations<MapsPart<first>>::find(mask);
 }
 

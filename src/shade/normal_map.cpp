@@ -23,28 +23,40 @@ Vec2 turned_grain(const Vec2& d, const Vec3& numbers) {
 
 bool tangent_frame(const FrameData& frame, const Surface& s, const Vec3& n, Vec3* tangent, Vec3* bitangent) {
   const Scene& scene = *frame.scene;
-  if (scene.uvs.empty()) return false;
   const Triangle& t = scene.triangles[s.hit.triangle];
   const std::uint32_t i = t.vertex(0), j = t.vertex(1), k = t.vertex(2);
-  const Vec3 e = frame.positions[j] - frame.positions[i], f = frame.positions[k] - frame.positions[i];
-  const float eu = scene.uvs[j].x - scene.uvs[i].x, ev = scene.uvs[j].y - scene.uvs[i].y;
-  const float fu = scene.uvs[k].x - scene.uvs[i].x, fv = scene.uvs[k].y - scene.uvs[i].y;
-  const float area = eu * fv - ev * fu;  // twice the triangle's in the texture, negative where that is mirrored
-  if (!(area < 0 || area > 0)) return false;
-  Vec3 along = (e * fv - f * ev) * (area < 0 ? -1.0f : 1.0f);
+  Vec3 along;
+  bool at_vertices = false;
+  int handedness = 0;
   if (scene.tangents.count) {
-    const Vec3 a = unpacked(scene.tangents[i]), b = unpacked(scene.tangents[j]), c = unpacked(scene.tangents[k]);
-    if (!is_zero(a) && !is_zero(b) && !is_zero(c)) along = a * (1 - s.hit.u - s.hit.v) + b * s.hit.u + c * s.hit.v;
+    const PackedTangent &p = scene.tangents[i], &q = scene.tangents[j], &r = scene.tangents[k];
+    const Vec3 a = unpacked(p), b = unpacked(q), c = unpacked(r);
+    at_vertices = !is_zero(a) && !is_zero(b) && !is_zero(c);
+    if (at_vertices) {
+      along = a * (1 - s.hit.u - s.hit.v) + b * s.hit.u + c * s.hit.v;
+      handedness = p.handedness + q.handedness + r.handedness;
+    }
+  }
+  if (handedness == 0) {
+    if (scene.uvs.empty()) return false;
+    const float eu = scene.uvs[j].x - scene.uvs[i].x, ev = scene.uvs[j].y - scene.uvs[i].y;
+    const float fu = scene.uvs[k].x - scene.uvs[i].x, fv = scene.uvs[k].y - scene.uvs[i].y;
+    const float area = eu * fv - ev * fu;  // twice the triangle's in the texture, negative where v runs downwards
+    if (!(area < 0 || area > 0)) return false;
+    handedness = area < 0 ? 1 : -1;
+    if (!at_vertices) {
+      const Vec3 e = frame.positions[j] - frame.positions[i], f = frame.positions[k] - frame.positions[i];
+      along = (e * fv - f * ev) * (area < 0 ? -1.0f : 1.0f);
+    }
   }
   *tangent = normalize(along - n * dot(n, along));
-  *bitangent = cross(n, *tangent) * (area < 0 ? 1.0f : -1.0f);
+  *bitangent = cross(n, *tangent) * (handedness > 0 ? 1.0f : -1.0f);
   return !is_zero(*tangent);
 }
 
-Vec3 mapped_normal(const FrameData& frame, const MaterialMaps& maps, const Vec3& texel, const Ray& ray,
-                   const Surface& s) {
+Vec3 mapped_normal(const FrameData& frame, float scale, const Vec3& texel, const Ray& ray, const Surface& s) {
   effect_entered<Effect::normal_map>();
-  const float x = component(texel.x) * maps.normal_scale, y = component(texel.y) * maps.normal_scale;
+  const float x = component(texel.x) * scale, y = component(texel.y) * scale;
   if (x == 0 && y == 0) return s.normal;
   const Vec3 n = s.front ? s.normal : -s.normal;
   Vec3 tangent, bitangent;

@@ -80,11 +80,11 @@ Vec3 spawn(Tracer* tracer, RayKind kind, const Surface& s, const Vec3& direction
   return weight * radiance<mask>(tracer, {safe_origin(s, side), direction, __builtin_inff()}, next);
 }
 
-// The perfect mirror. If the shading normal would reflect the ray below the surface, the geometric normal is used.
+// The perfect mirror. If the normal would reflect the ray below the surface, the geometric normal is used.
 template <EffectMask mask>
-Vec3 mirror(Tracer* tracer, RayKind kind, const Ray& ray, const Surface& s, const Path<mask>& path,
+Vec3 mirror(Tracer* tracer, RayKind kind, const Ray& ray, const Surface& s, const Vec3& normal, const Path<mask>& path,
             const Vec3& weight) {
-  Vec3 direction = reflect(ray.direction, s.normal);
+  Vec3 direction = reflect(ray.direction, normal);
   if (!(dot(direction, s.geometric) > 0)) direction = reflect(ray.direction, s.geometric);
   return spawn<mask>(tracer, kind, s, normalize(direction), 1, path, weight);
 }
@@ -113,7 +113,7 @@ Vec3 dielectric(Tracer* tracer, const Ray& ray, const Surface& s, const Contact&
   if (m.thin && reflected < 1) reflected = 2 * reflected / (1 + reflected);  // both faces of the sheet, all orders
   Vec3 sum = {0, 0, 0};
   Vec3 turned = mirrored + Vec3{reflected, reflected, reflected};
-  if (!is_zero(turned)) sum += mirror<mask>(tracer, RayKind::mirror, ray, s, path, turned);
+  if (!is_zero(turned)) sum += mirror<mask>(tracer, RayKind::mirror, ray, s, s.normal, path, turned);
   if (reflected < 1) {
     Vec3 tint = {1, 1, 1};
     for (std::uint32_t i = 0; i < contact.count; ++i) {
@@ -128,6 +128,25 @@ Vec3 dielectric(Tracer* tracer, const Ray& ray, const Surface& s, const Contact&
   return sum;
 }
 
+// What a coated surface mirrors and transmits: the base's reflected ray is the coat's, too, where they have one normal.
+template <EffectMask mask>
+Vec3 pass_coat(Tracer* tracer, const Ray& ray, const Surface& s, const Material& m, const Contact* contact,
+               const Path<mask>& path, const Vec3& mirrored) {
+  const SurfaceCoat& coat = s.coat;
+  const Vec3 by_coat = {coat.mirror, coat.mirror, coat.mirror};
+  const bool together = is_zero(m.transmission) && coat.normal == s.normal;
+  Vec3 sum = {0, 0, 0};
+  if (coat.mirror > 0 && !together) sum = mirror<mask>(tracer, RayKind::mirror, ray, s, coat.normal, path, by_coat);
+  if (!is_zero(m.transmission)) {
+    Path<mask> under = path;
+    under.weight = path.weight * coat.passes;
+    return sum + dielectric<mask>(tracer, ray, s, *contact, under, mirrored) * coat.passes;
+  }
+  const Vec3 turned = together ? mirrored * coat.passes + by_coat : mirrored * coat.passes;
+  if (!is_zero(turned)) sum += mirror<mask>(tracer, RayKind::mirror, ray, s, s.normal, path, turned);
+  return sum;
+}
+
 // Radiance that leaves the surface back along the ray; `m` has its lobes there.
 template <EffectMask mask>
 inline Vec3 shade_lobes(Tracer* tracer, const Ray& ray, const Surface& s, const Material& m, const Contact* contact,
@@ -135,6 +154,7 @@ inline Vec3 shade_lobes(Tracer* tracer, const Ray& ray, const Surface& s, const 
   Vec3 sum = s.glow;
   bool scatters = !is_zero(s.diffuse);
   if constexpr (has(mask, Effect::specular)) scatters |= !is_zero(m.specular);
+  if constexpr (has(mask, Effect::clear_coat)) scatters |= s.coat.lobe > 0;
   if (scatters) {
     if constexpr (has(mask, Effect::source_selection))
       sum += selected_light<mask>(tracer, s, m, -ray.direction, path.weight);
@@ -148,11 +168,13 @@ inline Vec3 shade_lobes(Tracer* tracer, const Ray& ray, const Surface& s, const 
       mirrored = reflectance_at(s, m.mirror, m.mirror_tinted);
     }
   }
+  if constexpr (has(mask, Effect::clear_coat))
+    if (s.coat.passes < 1) return sum + pass_coat<mask>(tracer, ray, s, m, contact, path, mirrored);
   if constexpr (has(mask, Effect::refraction)) {
     if (!is_zero(m.transmission)) return sum + dielectric<mask>(tracer, ray, s, *contact, path, mirrored);
   }
   if constexpr (has(mask, Effect::mirror)) {
-    if (!is_zero(m.mirror)) sum += mirror<mask>(tracer, RayKind::mirror, ray, s, path, mirrored);
+    if (!is_zero(m.mirror)) sum += mirror<mask>(tracer, RayKind::mirror, ray, s, s.normal, path, mirrored);
   }
   return sum;
 }
@@ -160,8 +182,7 @@ inline Vec3 shade_lobes(Tracer* tracer, const Ray& ray, const Surface& s, const 
 // The same. `contact` is required if it transmits.
 template <EffectMask mask>
 Vec3 shade(Tracer* tracer, const Ray& ray, const Surface& s, const Contact* contact, const Path<mask>& path) {
-  if constexpr (has(mask, Effect::metallic_roughness) || has(mask, Effect::mip_map) ||
-                has(mask, Effect::source_selection)) {
+  if constexpr (has(mask, Effect::metallic_roughness) || has(mask, Effect::mip_map) || kHoldsRest<mask>) {
     const EffectMask plan = tracer->frame->mask;
     Material mapped;
     const Material* m = s.material;
@@ -169,8 +190,7 @@ Vec3 shade(Tracer* tracer, const Ray& ray, const Surface& s, const Contact* cont
     // reduced() has added them
     const bool shines = !has(plan, Effect::specular) && !is_zero(m->specular);
     const bool mirrors = !has(plan, Effect::mirror) && !is_zero(m->mirror);
-    const bool transmits =
-        has(mask, Effect::source_selection) && !has(plan, Effect::refraction) && !is_zero(m->transmission);
+    const bool transmits = kHoldsRest<mask> && !has(plan, Effect::refraction) && !is_zero(m->transmission);
     if (shines || mirrors || transmits) {
       if (m != &mapped) mapped = *m;
       if (transmits) mapped.transmission = {0, 0, 0};
@@ -334,10 +354,25 @@ struct SelectingRadiancePart {
   }
 };
 
+// The same for clear coats, which cost more than the looking up.
+struct CoatedRadiancePart {
+  using Function = RadianceFunction;
+  static constexpr Effect kEffects[] = {Effect::shadow, Effect::mip_map, Effect::environment, Effect::source_selection};
+  static constexpr EffectMask kRest = bit(Effect::clear_coat) | bit(Effect::specular) | bit(Effect::mirror) |
+                                      bit(Effect::refraction) | bit(Effect::absorption) | bit(Effect::alpha_blend) |
+                                      bit(Effect::back_face_culling) | bit(Effect::metallic_roughness);
+  template <EffectMask mask>
+  static constexpr Function instance() {
+    return primary_radiance<RadiancePart::reduced(mask | kRest)>;
+  }
+};
+
 }  // namespace
 
 RadianceFunction find_radiance_function(EffectMask mask) {
   if (has(mask, Effect::anisotropy)) mask |= bit(Effect::metallic_roughness);  // which looks up lobes at the point
+  if constexpr (has(kAllEffects, Effect::clear_coat))
+    if (has(mask, Effect::clear_coat)) return Instantiations<CoatedRadiancePart>::find(mask);
   if constexpr (has(kAllEffects, Effect::source_selection))
     if (has(mask, Effect::source_selection)) return Instantiations<SelectingRadiancePart>::find(mask);
   return Instantiations<RadiancePart>::find(mask);

@@ -14,16 +14,20 @@
 
 namespace pocketray {
 
-// The effects that are simulated. Source selection has few instances, which hold the code of all other effects.
+// Whether an instance holds the code of nearly all effects: source selection and clear coats have few instances.
+template <EffectMask mask>
+constexpr bool kHoldsRest = has(mask, Effect::source_selection) || has(mask, Effect::clear_coat);
+
+// The effects that are simulated.
 template <EffectMask mask>
 constexpr EffectMask plan_of(const FrameData& frame) {
-  if constexpr (has(mask, Effect::source_selection)) return frame.mask;
+  if constexpr (kHoldsRest<mask>) return frame.mask;
   return mask;
 }
 
 // What the light that passes depends on: fewer instances.
-constexpr EffectMask kPassageEffects =
-    bit(Effect::refraction) | bit(Effect::absorption) | bit(Effect::alpha_blend) | bit(Effect::source_selection);
+constexpr EffectMask kPassageEffects = bit(Effect::refraction) | bit(Effect::absorption) | bit(Effect::alpha_blend) |
+                                       bit(Effect::source_selection) | bit(Effect::clear_coat);
 
 // Whether to skip a contribution of at most `bound`: all that is skipped of a sample stays below half the narrowest
 // display level, so no pixel changes by more than one level.

@@ -6,6 +6,7 @@
 #include "base/float_bits.h"
 #include "base/limits.h"
 #include "brdf/brdf_list.h"
+#include "shade/clear_coat.h"
 #include "shade/lights.h"
 #include "shade/tile_shadows.h"
 
@@ -40,6 +41,10 @@ SourceSearch::SourceSearch(Tracer* tracer, const Surface& surface, const Materia
     diffuse_most_ *= lobe_.diffuse_max;
     specular_most_ = max_component(lobe_.peak(m));
   }
+  if (shines_by_coat(frame_, surface)) {
+    const Material coat = coat_lobe(surface.coat.roughness);
+    specular_most_ += surface.coat.lobe * kBrdfList[coat.brdf]->peak(coat).x;
+  }
   for (std::uint16_t run = 0; run < frame_.light_run_count; ++run) {
     const std::uint32_t root = frame_.light_tree.roots[run];
     if (root != kNone) {
@@ -55,9 +60,13 @@ bool SourceSearch::radiance(const LightPoint& light, std::uint32_t run, Vec3* ra
   if (!lights_up(frame_, surface_, frame_.light_runs[run], light, &sample)) return false;
   if (!has(frame_.mask, Effect::shadow) && is_below(surface_, sample.direction)) return false;
   const float cosine = dot(surface_.normal, sample.direction);
-  const Vec3 f =
-      shines_ ? lobe_.value(material_, specular_, diffuse_, surface_, to_viewer_, sample.direction) : diffuse_;
+  const bool is_coated = has(frame_.mask, Effect::clear_coat);
+  Vec3 f = diffuse_;
+  if (shines_)
+    f = is_coated ? value_under_coat(lobe_, material_, specular_, diffuse_, surface_, to_viewer_, sample.direction)
+                  : lobe_.value(material_, specular_, diffuse_, surface_, to_viewer_, sample.direction);
   *radiance = f * sample.irradiance * cosine;
+  if (is_coated) *radiance += sample.irradiance * coat_reflection(surface_, to_viewer_, sample.direction);
   return true;
 }
 

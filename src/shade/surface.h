@@ -14,6 +14,15 @@ struct SurfacePlace {
   std::uint32_t triangle;
 };
 
+// What a clear coat makes of a surface, see clear_coat.h.
+struct SurfaceCoat {
+  float passes;     // share of the base's light that it lets through; 1: there is no coat
+  float lobe;       // strength of its lobe; 0: none, or the plan has no glossy lobes
+  float mirror;     // its reflectance as a mirror; 0: none, or the plan has no mirrors
+  float roughness;  // set with a lobe
+  Vec3 normal;      // unit
+};
+
 // Its normal, and the geometric one, are unit and on the side the ray came from.
 struct Surface : LobeFrame {
   Vec3 point;
@@ -29,6 +38,7 @@ struct Surface : LobeFrame {
   float roughness;
   SurfacePlace hit;
   Footprints footprint;  // set with Effect::mip_map
+  SurfaceCoat coat;      // set with Effect::clear_coat
 };
 
 // Whether the ray met the back of a one-sided surface. Glass bodies have both sides. Only visible surfaces are culled:

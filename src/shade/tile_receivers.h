@@ -1,24 +1,27 @@
 // The surfaces of a tile that receive light, for tile_shadows.cpp and tile_lamps.cpp.
 #pragma once
 #include "base/fmath.h"
+#include "shade/clear_coat.h"
 #include "shade/filters.h"
 #include "shade/lights.h"
 #include "shade/tile_shadows.h"
 
 namespace pocketray {
 
-inline bool receives(const Surface& s) { return !(is_zero(s.diffuse) && is_zero(s.material->specular)); }
+inline bool receives(const FrameData& frame, const Surface& s) {
+  return !(is_zero(s.diffuse) && is_zero(s.material->specular)) || shines_by_coat(frame, s);
+}
 
 // Whether direct_light() will probably skip light of that irradiance, or the ray to a sample; highlights are not
 // estimated.
 [[gnu::always_inline]] inline bool cannot_matter(const FrameData& frame, const Surface& s, const Vec3& irradiance) {
   if (!is_zero(s.material->specular)) return false;
-  return max_component(s.diffuse * (1 / kPiF) * irradiance) <= frame.left_out_max;
+  return max_component(s.diffuse * (1 / kPiF) * irradiance) <= frame.left_out_max && !shines_by_coat(frame, s);
 }
 [[gnu::always_inline]] inline bool cannot_matter(const FrameData& frame, const Surface& s, const LightSample& sample) {
   if (!is_zero(s.material->specular)) return false;
   Vec3 most = s.diffuse * (1 / kPiF) * sample.irradiance * dot(s.normal, sample.direction);
-  return max_component(most) <= frame.left_out_max;
+  return max_component(most) <= frame.left_out_max && !shines_by_coat(frame, s);
 }
 
 // The pixels whose first hits receive light, and the origins of their shadow rays, by pixel.

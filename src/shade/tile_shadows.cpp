@@ -11,7 +11,7 @@ void find_receivers(const FrameData& frame, const RayPacket& rays, const Hit* hi
     Surface& s = shadows->surface[i];
     frame.first_surface(frame, ray_of(rays, i), hits[i], &s);
     receivers->origin[i] = safe_origin(s, 1);
-    if (receives(s)) receivers->pixel[receivers->count++] = static_cast<std::uint8_t>(i);
+    if (receives(frame, s)) receivers->pixel[receivers->count++] = static_cast<std::uint8_t>(i);
   }
 }
 

@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "base/check.h"
+#include "brdf/clear_coat.h"
 #include "shade/trace_spans.h"
 #include "temporal/tile_search.h"
 
@@ -21,7 +22,10 @@ TilePixels pixels_of(const Settings& settings, std::uint32_t column, std::uint32
   return p;
 }
 
-bool scatters(const Material& m) { return !is_zero(m.diffuse) || !is_zero(m.specular); }
+bool scatters(const Scene& scene, std::uint32_t material) {
+  const Material& m = scene.materials[material];
+  return !is_zero(m.diffuse) || !is_zero(m.specular) || coat_of(scene, material);
+}
 
 // The pixels whose first hits are the last frame's and may receive light.
 void find_receivers(TileSearch* t) {
@@ -30,7 +34,7 @@ void find_receivers(TileSearch* t) {
   for (std::uint32_t i = 0; i < t->pixels.count; ++i) {
     const Hit& hit = t->hits[index_of(t->frame.settings, t->pixels, i)];
     if (hit.triangle == kNoTriangle || t->changed & bit_of(t->pixels, i)) continue;
-    if (!scatters(t->frame.scene->materials[t->frame.scene->triangles[hit.triangle].material()])) continue;
+    if (!scatters(*t->frame.scene, t->frame.scene->triangles[hit.triangle].material())) continue;
     t->point[t->receiver_count] = point_of(t->frame, hit);
     t->receiver[t->receiver_count++] = static_cast<std::uint8_t>(i);
   }

@@ -35,6 +35,17 @@ std::string two_sets_gltf() {
       "iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mNoaPj/HwAGggL/bOBDIwAAAABJRU5ErkJggg==\"}]");
 }
 
+// A clear coat with all its textures.
+std::string coated_gltf() {
+  const std::string texture = "Texture\":{\"index\":0,\"texCoord\":0}";
+  return triangle_gltf(
+      "{\"extensions\":{\"KHR_materials_clearcoat\":{\"clearcoatFactor\":0.5,\"clearcoatRoughnessFactor\":0.5,"
+      "\"clearcoat" +
+          texture + ",\"clearcoatRoughness" + texture + ",\"clearcoatNormal" + texture + "}}}",
+      ",\"textures\":[{\"source\":0}],\"images\":[{\"uri\":\"data:image/png;base64,"
+      "iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mNoaPj/HwAGggL/bOBDIwAAAABJRU5ErkJggg==\"}]");
+}
+
 std::string ply(const char* format, const char* count_type, bool binary) {
   std::string file =
       std::string("ply\nformat ") + format + " 1.0\nelement vertex 4\nproperty float x\nproperty float y\n" +
@@ -92,12 +103,13 @@ std::vector<Model> models() {
   return {
       {"triangle.gltf", "gltf", triangle_gltf("{}")},
       {"two_sets.gltf", "gltf", two_sets_gltf()},
+      {"coated.gltf", "gltf", coated_gltf()},
       {"animated.glb", "glb", animated_glb()},
       {"square.obj", "obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvn 0 0 1\nf 1/1/1 2//1 3/1 -1\nl 1 2\n"},
       {"forms.obj", "obj",
        "\xEF\xBB\xBFv 0 0 0\nv 1 0 \\\n0\nv 1 1 0\r\nv 0 1 0\rf 1// 2// 3//\nf 1/1/ 2/ \\\r\n3//\n#\\\nf 1 2 4\\"},
       {"wide.obj", "obj", std::string("\xFF\xFEv\0 \0", 6)},
-      {"shining.mtl", "mtl", "newmtl m\nKd 1 0 0\nKs 1 1 1\nNs 20\nd 0.5\nmap_Kd a.png\n"},
+      {"shining.mtl", "mtl", "newmtl m\nKd 1 0 0\nKs 1 1 1\nNs 20\nd 0.5\nmap_Kd a.png\nPc 0.5\nPcr 0.25\n"},
       {"ascii.ply", "ply", ply("ascii", "uchar", false)},
       {"binary.ply", "ply", ply("binary_little_endian", "uchar", true)},
       {"strips.ply", "ply",

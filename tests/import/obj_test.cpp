@@ -84,6 +84,20 @@ TEST_CASE("obj_physically_based_materials_and_grains") {
   CHECK(load_material("Kd 0.5 0.5 0.5\naniso 0.5\nillum 1\n").scene.grains.count == 0);
 }
 
+// Goal: `Pc` and `Pcr` are a clear coat over any material, glass too; none without strength.
+TEST_CASE("obj_clear_coats_are_read") {
+  for (const char* base : {"Kd 1 0 0\nillum 1\n", "Kd 1 0 0\nKs 1 1 1\nNs 9\nillum 2\n", "Pr 0.5\n", "illum 7\n"}) {
+    const ImportedScene imported = load_material(std::string(base) + "Pc 0.5\nPcr 0.25\n");
+    CAPTURE(std::string(base));
+    CHECK(imported.warning.empty());
+    REQUIRE(imported.scene.clear_coats.count == 1);
+    const ClearCoat& coat = imported.scene.clear_coats[0];
+    CHECK((coat.strength == 0.5f && coat.roughness == 0.25f && coat.roughness_low == 0.25f));
+  }
+  CHECK(load_material("Kd 1 0 0\nPcr 0.25\n").scene.clear_coats.empty());
+  CHECK(load_material("Kd 1 0 0\nPc 9\nPcr -1\n").scene.clear_coats[0].strength == 1);
+}
+
 // Goal: emission and both spellings of opacity.
 TEST_CASE("obj_emission_and_opacity") {
   CHECK(first(load_material("Ke 17 12 4\n")).emission == Vec3{17, 12, 4});

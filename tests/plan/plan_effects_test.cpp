@@ -70,6 +70,7 @@ TEST_CASE("plan_effects_follow_the_scene") {
        bit(E::metallic_roughness) | bit(E::specular) | bit(E::mirror) | bit(E::ambient_gloss)},
       {bit(F::normal_map), bit(E::normal_map)},
       {bit(F::anisotropy), bit(E::anisotropy) | bit(E::specular) | bit(E::ambient_gloss)},
+      {bit(F::clear_coat), bit(E::clear_coat) | bit(E::specular) | bit(E::mirror) | bit(E::ambient_gloss)},
       {bit(F::occlusion), 0},  // nothing to take away
       {bit(F::occlusion) | bit(F::ambient), bit(E::occlusion) | bit(E::ambient)},
       {bit(F::second_uv), 0},  // no texture
@@ -88,6 +89,29 @@ TEST_CASE("plan_effects_follow_the_scene") {
     CAPTURE(row.features);
     CHECK(plan_of(row.features) == row.mask);
   }
+}
+
+// Goal: textures of a clear coat call for what they read, and only while there is a coat. Method: a coat with each of
+// its textures, which has levels and reads the second coordinates; without strength.
+TEST_CASE("plan_effects_follow_the_textures_of_coats") {
+  for (TextureUse ClearCoat::*use : {&ClearCoat::strength_texture, &ClearCoat::roughness_texture, &ClearCoat::normal})
+    for (float strength : {1.0f, 0.0f}) {
+      GeneratedScene s;
+      add_quad(&s, {0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, add_material(&s, Material()));
+      const std::uint32_t texture = add_texture(&s, 2, 2, std::vector<std::array<int, 4>>(4, {{9, 9, 9, 255}}));
+      add_levels(&s, texture);
+      const bool is_normal = use == &ClearCoat::normal;
+      s.textures[texture].uv_set = !is_normal;
+      s.clear_coats.resize(1);
+      s.clear_coats[0].strength = strength, (s.clear_coats[0].*use).texture = texture;
+      s.with_uvs = s.with_second_uvs = true;
+      s.bind();
+      const EffectMask mask = plan_effects(s.scene, Settings()).mask;
+      CHECK(has(mask, Effect::clear_coat) == (strength > 0));
+      CHECK(has(mask, Effect::mip_map) == (strength > 0));
+      CHECK(has(mask, Effect::second_uv) == (strength > 0 && !is_normal));
+      CHECK(has(mask, Effect::normal_map) == (strength > 0 && is_normal));
+    }
 }
 
 // Goal: every decision states its reason, in the scene's own figures. Method: examples.

@@ -81,8 +81,9 @@ TEST_CASE("probe_generated_scenes_enter_what_the_plan_has_and_nothing_else") {
     // A glossy lobe is entered only where a light is.
     constexpr std::uint32_t kLit =
         bit(Feature::point_light) | bit(Feature::spot_light) | bit(Feature::directional_light) | bit(Feature::emission);
-    if ((has(features, Feature::metallic_roughness) || has(features, Feature::anisotropy)) && !(features & kLit))
-      continue;
+    constexpr std::uint32_t kGlossy =
+        bit(Feature::metallic_roughness) | bit(Feature::anisotropy) | bit(Feature::clear_coat);
+    if ((features & kGlossy) && !(features & kLit)) continue;
     auto generated = generate_scene(features, features + 1);
     Settings settings = settings_for(features, 24, 18);
     EffectMask mask;
@@ -92,8 +93,10 @@ TEST_CASE("probe_generated_scenes_enter_what_the_plan_has_and_nothing_else") {
     CAPTURE(features);
     for (const EffectRow& row : kEffectList) {
       CAPTURE(std::string(row.name));
+      // A cut-out pane may show nothing but holes.
+      const bool may_be_unseen = row.effect == Effect::texture && !has(features, Feature::texture);
       if (has(mask, row.effect))
-        REQUIRE(counted[static_cast<int>(row.effect)] > 0);
+        REQUIRE((counted[static_cast<int>(row.effect)] > 0 || may_be_unseen));
       else
         REQUIRE(counted[static_cast<int>(row.effect)] == 0);
     }

@@ -157,7 +157,8 @@ TEST_CASE("reference_density_is_that_of_its_samples") {
 TEST_CASE("reference_model_is_the_renderers_limit") {
   std::uint32_t without = bit(Feature::emission) | bit(Feature::animation) | bit(Feature::supersampling);
   std::uint32_t chance =
-      bit(Feature::mirror) | bit(Feature::refraction) | bit(Feature::thin) | bit(Feature::alpha_blend);
+      bit(Feature::mirror) | bit(Feature::refraction) | bit(Feature::thin) | bit(Feature::alpha_blend) |
+      bit(Feature::clear_coat);
   std::vector<std::uint32_t> sets = {kAllFeatures & ~without};
   for (int i = 0; i < kFeatureCount; ++i)
     if (!(without & 1u << i)) sets.push_back(1u << i | bit(Feature::point_light));
@@ -168,6 +169,11 @@ TEST_CASE("reference_model_is_the_renderers_limit") {
   sets.push_back(bit(Feature::metallic_roughness) | bit(Feature::normal_map) | bit(Feature::occlusion) |
                  bit(Feature::anisotropy) | bit(Feature::texture) | bit(Feature::second_uv) | bit(Feature::ambient) |
                  bit(Feature::point_light));
+  const std::uint32_t coated = bit(Feature::clear_coat) | bit(Feature::point_light);
+  sets.push_back(coated | bit(Feature::texture) | bit(Feature::normal_map) | bit(Feature::occlusion) |
+                 bit(Feature::ambient) | bit(Feature::smooth_normal));
+  sets.push_back(coated | bit(Feature::metallic_roughness) | bit(Feature::anisotropy) | bit(Feature::specular));
+  sets.push_back(coated | bit(Feature::refraction) | bit(Feature::mirror) | bit(Feature::alpha_blend));
   const std::size_t plain_count = sets.size();
   sets.push_back(bit(Feature::texture) | bit(Feature::vertex_color) | bit(Feature::point_light));
   sets.push_back(sets.back() | bit(Feature::mirror) | bit(Feature::smooth_normal));

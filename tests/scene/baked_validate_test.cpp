@@ -217,6 +217,31 @@ TEST_CASE("validate_scene_refuses_bad_grains") {
   accepts([](FullScene* f) { f->grains[0].direction = {0.70710678f, -0.70710678f}; });
 }
 
+// Goal: a clear coat out of range, with an invalid texture, over an unlit material or with normals of the second
+// coordinates is refused.
+TEST_CASE("validate_scene_refuses_bad_clear_coats") {
+  for (float bad : {kNan, kInf, 1.01f, -0.5f}) {
+    refuses("clear_coats[1].strength", [=](FullScene* f) { f->clear_coats[1].strength = bad; });
+    refuses("clear_coats[0].roughness", [=](FullScene* f) { f->clear_coats[0].roughness = bad; });
+    refuses("clear_coats[1].roughness_low", [=](FullScene* f) { f->clear_coats[1].roughness_low = bad; });
+  }
+  for (float bad : {kNan, kInf, 1e5f})
+    refuses("clear_coats[2].normal_scale", [=](FullScene* f) { f->clear_coats[2].normal_scale = bad; });
+  refuses("clear_coats[1].roughness_low", [](FullScene* f) { f->clear_coats[1].roughness = 0.125f; });
+  refuses("clear_coats[0].roughness_low is 0 without a texture", [](FullScene* f) { f->clear_coats[0].roughness = 1; });
+  refuses("clear_coats[1].strength_texture is texture 7 of 2",
+          [](FullScene* f) { f->clear_coats[1].strength_texture.texture = 7; });
+  refuses("clear_coats[2].roughness_texture has a transform",
+          [](FullScene* f) { f->clear_coats[2].roughness_texture.m[0][1] = kNan; });
+  refuses("clear_coats[0].normal is texture 2 of 2", [](FullScene* f) { f->clear_coats[0].normal.texture = 2; });
+  refuses("clear_coats[1].normal reads second_uvs", [](FullScene* f) { f->clear_coats[1].normal.texture = 1; });
+  refuses("clear_coats[0] coats materials[0], which is unlit",
+          [](FullScene* f) { f->materials[0].unlit = 1, f->clear_coats[0].strength = 1; });
+  refuses("one for each", [](FullScene* f) { f->clear_coats.pop_back(); });
+  accepts([](FullScene* f) { f->clear_coats.clear(); });
+  accepts([](FullScene* f) { f->materials[0].unlit = 1; });
+}
+
 // Goal: a texture of the second coordinates finds them, finite, one at each vertex; a normal map has the first ones,
 // whose frame is its own. Method: each wrong in turn.
 TEST_CASE("validate_scene_refuses_bad_second_uvs") {

@@ -91,6 +91,7 @@ void FullScene::bind() {
   scene.radiosity_corners = view(radiosity_corners), scene.radiosity_values = view(radiosity_values);
   scene.environment_info = view(environment_info), scene.environment_texels = view(environment_texels);
   scene.grains = view(grains), scene.tangents = view(tangents), scene.second_uvs = view(second_uvs);
+  scene.clear_coats = view(clear_coats);
 }
 
 void make_full_scene(std::uint64_t seed, std::uint32_t vertex_count, std::uint32_t triangle_count, FullScene* full) {
@@ -124,6 +125,10 @@ void make_full_scene(std::uint64_t seed, std::uint32_t vertex_count, std::uint32
   full->tangents.assign(vertex_count, {127, 0, -3, 0});
   for (const Vec2& uv : full->uvs) full->second_uvs.push_back({1 - uv.y, uv.x});
   full->textures[1].uv_set = 1;
+  full->clear_coats.resize(full->materials.size());
+  ClearCoat& coat = full->clear_coats[1];
+  coat.strength = 0.75f, coat.roughness = 0.5f, coat.roughness_low = 0.25f, coat.normal_scale = -2;
+  coat.strength_texture.texture = coat.roughness_texture.texture = 1, coat.normal.texture = 0;
   for (int i = 0; i < 37; ++i) full->accel.push_back(static_cast<std::uint8_t>(next_u32(&rng)));
   full->bind();
 }

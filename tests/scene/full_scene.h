@@ -35,6 +35,7 @@ struct FullScene {
   std::vector<pocketray::EnvironmentInfo> environment_info;
   std::vector<std::uint32_t> environment_texels;
   std::vector<pocketray::Grain> grains;
+  std::vector<pocketray::ClearCoat> clear_coats;
   std::vector<pocketray::PackedTangent> tangents;
 
   FullScene() = default;

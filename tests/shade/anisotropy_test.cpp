@@ -108,6 +108,21 @@ TEST_CASE("anisotropy_follows_tangents_at_vertices") {
   check_lobe(&s, {1, 0.5f, 2}, Vec3d{0.8 * 76, 0.8 * 102, 0} * (1 / std::sqrt(76.0 * 76 + 102 * 102)));
 }
 
+// Goal: vertices with a handedness need no texture coordinates. Method: the lobe with the grain by hand, of either
+// handedness.
+TEST_CASE("anisotropy_follows_the_frame_of_vertices") {
+  for (std::int8_t handedness : {std::int8_t(1), std::int8_t(-1)})
+    for (bool with_uvs : {true, false}) {
+      GeneratedScene s;
+      make_sheet(&s, brushed(kGgx), {{0.5f, 0.4f}, {}});
+      s.with_uvs = with_uvs;
+      s.tangents.assign(s.positions.size(), {0, 127, 0, handedness});
+      CAPTURE(handedness);
+      CAPTURE(with_uvs);
+      check_lobe(&s, {1, 0.5f, 2}, {-0.4 * handedness, 0.5, 0});
+    }
+}
+
 // Goal: without texture coordinates, with a grain of strength 0, with a lobe that has none, or with the effect off,
 // the surface shines evenly. Method: bits of the plain lobe's picture.
 TEST_CASE("anisotropy_is_absent_without_a_frame") {

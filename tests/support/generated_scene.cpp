@@ -63,10 +63,33 @@ void add_brushed_box(GeneratedScene* s, std::uint32_t features, Rng* rng) {
   s->tangents.resize(s->positions.size());
   add_box(s, {2, 0, -2}, {2.7f, 1.5f, -1.2f}, material);
   for (std::size_t i = s->tangents.size(); i + 4 < s->positions.size(); ++i)  // not of the last side
-    s->tangents.push_back({static_cast<std::int8_t>(90 - 11 * (i % 4)), 60, -66, 0});
+    s->tangents.push_back(
+        {static_cast<std::int8_t>(90 - 11 * (i % 4)), 60, -66, static_cast<std::int8_t>(i / 4 % 3 - 1)});
   s->grains.resize(s->materials.size());
   s->grains[material].direction = {0.6f, -0.5f};
   if (has(features, Feature::texture)) s->grains[material].texture.texture = add_noise_texture(s, rng, false);
+}
+
+// Matte, mirroring and half-mirroring coats, on surfaces of all kinds; the last one has whatever textures there are.
+void add_coats(GeneratedScene* s, std::uint32_t features, Rng* rng) {
+  if (!has(features, Feature::clear_coat)) return;
+  s->clear_coats.resize(s->materials.size());
+  const struct {
+    std::uint32_t material;
+    float strength, roughness;
+  } coats[] = {{1, 0.8f, 0.5f}, {2, 1, 0}, {3, 0.7f, 0.2f}, {4, 0.5f, 0.1f}, {8, 0.6f, 0.4f}, {9, 1, 0.3f}};
+  for (const auto& coat : coats) {
+    ClearCoat& c = s->clear_coats[coat.material];
+    c.strength = coat.strength, c.roughness = c.roughness_low = coat.roughness;
+  }
+  ClearCoat& last = s->clear_coats.back();
+  last.strength = 1, last.roughness = last.roughness_low = 0.4f;
+  add_box(s, {-0.3f, 0, -1.9f}, {0.5f, 1.1f, -1.1f}, static_cast<std::uint32_t>(s->materials.size() - 1));
+  if (has(features, Feature::normal_map)) last.normal.texture = add_noise_texture(s, rng, false);
+  last.normal_scale = 0.3f;
+  if (!has(features, Feature::texture)) return;
+  last.strength_texture.texture = add_noise_texture(s, rng, false);
+  last.roughness_texture.texture = add_noise_texture(s, rng, false), last.roughness_low = 0.05f;
 }
 
 void add_bodies(GeneratedScene* s, std::uint32_t features, Rng* rng) {
@@ -158,6 +181,7 @@ void add_mip_maps(GeneratedScene* s) {
   for (Material& m : s->materials) repeat(&m.diffuse_texture), repeat(&m.emission_texture);
   for (MaterialMaps& maps : s->material_maps)
     repeat(&maps.metallic_roughness), repeat(&maps.occlusion), repeat(&maps.specular);
+  for (ClearCoat& coat : s->clear_coats) repeat(&coat.strength_texture), repeat(&coat.roughness_texture);
 }
 
 // Two textures of three read the second coordinates, but those of normals cannot.
@@ -165,6 +189,8 @@ void add_second_uvs(GeneratedScene* s) {
   for (std::size_t i = 0; i < s->textures.size(); ++i) s->textures[i].uv_set = i % 3 != 1;
   for (const MaterialMaps& maps : s->material_maps)
     if (maps.normal.texture != kNone) s->textures[maps.normal.texture].uv_set = 0;
+  for (const ClearCoat& coat : s->clear_coats)
+    if (coat.normal.texture != kNone) s->textures[coat.normal.texture].uv_set = 0;
 }
 
 }  // namespace
@@ -179,6 +205,7 @@ std::unique_ptr<GeneratedScene> generate_scene(std::uint32_t features, std::uint
   add_panes(s.get(), features, &rng);
   add_mapped_box(s.get(), features, &rng);
   add_brushed_box(s.get(), features, &rng);
+  add_coats(s.get(), features, &rng);
   if (!s->material_maps.empty()) s->material_maps.resize(s->materials.size());
   if (!s->grains.empty()) s->grains.resize(s->materials.size());
   if (has(features, Feature::mip_map)) add_mip_maps(s.get());
@@ -200,7 +227,7 @@ Settings settings_for(std::uint32_t features, std::uint32_t width, std::uint32_t
   settings.width = width;
   settings.height = height;
   settings.samples_per_pixel = has(features, Feature::supersampling) ? 2 : 1;
-  const std::uint32_t lit = features & ~bit(Feature::second_uv);
+  const std::uint32_t lit = features & ~bit(Feature::second_uv) & ~bit(Feature::clear_coat);
   settings.points_per_area_light = lit % 3 == 0 ? 9 : 2;  // in groups, or tested one by one
   return settings;
 }
