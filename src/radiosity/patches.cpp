@@ -7,6 +7,7 @@
 
 #include "base/check.h"
 #include "base/fmath.h"
+#include "brdf/brdf_list.h"
 #include "effect/settings.h"
 #include "scene/metallic_roughness.h"
 #include "shade/texture.h"
@@ -90,8 +91,9 @@ Vec3d albedo_at(const Scene& scene, std::uint32_t triangle, const Vec3d& point) 
     }
     tint *= color;
   }
-  const Vec3d glossy = to_double(m.specular) + to_double(m.mirror);
-  const Vec3d tinted = to_double(m.specular_tinted) + to_double(m.mirror_tinted);
+  const double lobe = m.brdf == kPhong ? static_cast<double>(kPhongAlbedo) : 1;
+  const Vec3d glossy = to_double(m.specular) * lobe + to_double(m.mirror);
+  const Vec3d tinted = to_double(m.specular_tinted) * lobe + to_double(m.mirror_tinted);
   if (scene.material_maps.count && has_lobe_map(scene.material_maps[t.material()])) {
     const MaterialMaps& maps = scene.material_maps[t.material()];
     double metallic = double(maps.metallic);

@@ -3,7 +3,9 @@
 
 #include <doctest/doctest.h>
 
+#include "effect/setting_list.h"
 #include "indirect/indirect_list.h"
+#include "support/generated_scene.h"
 
 using namespace pocketray;
 
@@ -52,6 +54,41 @@ TEST_CASE("radiosity_is_looked_up_by_triangle_side_and_place") {
   Stored fronts;
   fronts.scene.radiosity_triangles.count = 2;
   CHECK(fronts.at(0, .25f, .5f, false, R::bilinear) == 0);
+}
+
+// Goal: Phong's lobe reflects stored light as a diffuse surface of its mean albedo; no other lobe does, nor an unlit
+// material, nor a lobe that is switched off.
+TEST_CASE("radiosity_is_reflected_by_glossy_lobes") {
+  Stored s;
+  const Vec3 any = {0, 0, 0};
+  IndirectPoint at = {s.scene, nullptr, any, any, any, 1, .25f, .5f};
+  at.glossy = {.3f, .6f, 0};
+  const Vec3 value = RadiosityIndirect::radiance(at);
+  CHECK(value.x == doctest::Approx(.2 * (.25 * 2 + .5 * 3)));
+  CHECK(value.y == doctest::Approx(.4 * (.25 * 2 + .5 * 3)));
+  Material material;
+  material.diffuse = {.25f, .25f, .25f}, material.specular = {.3f, .3f, .3f}, material.exponent = 20;
+  CHECK(RadiosityIndirect::bound(s.scene, material) == doctest::Approx(.45 * 4));
+  material.brdf = kGgx;
+  CHECK(RadiosityIndirect::bound(s.scene, material) == doctest::Approx(.25 * 4));
+
+  for (std::uint32_t& place : s.places) place = kRadiosityAtVertices;
+  for (Vec3& stored : s.values) stored = {1, 1, 1};
+  s.scene.materials = {&material, 1};
+  Light dark;  // no default lights
+  dark.position = {0, 0, -1}, s.scene.lights = {&dark, 1};
+  Settings settings;
+  settings.width = settings.height = 4, settings.indirect = indirect_choice(Effect::radiosity);
+  auto seen = [&](std::uint32_t brdf, bool unlit, EffectMask off) {
+    material.brdf = brdf, material.unlit = unlit, settings.forced_off = off;
+    auto test = make_renderer(s.scene, settings);
+    REQUIRE(prepare_frame(&test->renderer, 0).ok);
+    return trace_ray(test->renderer, {.5f, .25f, 1}, {0, 0, -1}).x;
+  };
+  CHECK(seen(kPhong, false, 0) == doctest::Approx(.45));
+  CHECK(seen(kPhong, false, bit(Effect::specular)) == doctest::Approx(.25));
+  CHECK(seen(kPhong, true, 0) == doctest::Approx(.25));
+  CHECK(seen(kGgx, false, 0) == doctest::Approx(.25));
 }
 
 // Goal: no value leaves [0, the stored maximum], which the cut-off relies on. Method: tangents that overshoot both
