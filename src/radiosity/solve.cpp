@@ -7,14 +7,16 @@
 #include "base/check.h"
 #include "base/fmath.h"
 #include "radiosity/receivers.h"
+#include "radiosity/refine.h"
 #include "radiosity/tangents.h"
 
 namespace pocketray {
 namespace {
 
 constexpr std::uint32_t kPatchRays = 36, kNodeRays = 64;
-constexpr double kBackSees = 0.05;  // share of fronts around a back that is worth light of its own
-constexpr double kCovered = 0.9;    // share of back faces around a node that lies inside a body
+constexpr std::uint32_t kRefined = 4;  // largest ratio of numbers of patches by refinement
+constexpr double kBackSees = 0.05;     // share of fronts around a back that is worth light of its own
+constexpr double kCovered = 0.9;       // share of back faces around a node that lies inside a body
 
 Outlook look_around_patch(const SceneRays& rays, const Patch& patch, std::uint32_t seed) {
   Outlook mean;
@@ -119,6 +121,9 @@ Status solve_radiosity(const FrameData& frame, const RadiosityOptions& options, 
   const Surfaces surfaces = find_surfaces(scene, options.patch_count);
   if (!(surfaces.total_area > 0)) return failure("the scene has no surface that could reflect light");
   std::vector<Patch> patches = make_patches(scene, surfaces);
+  refine_patches(rays, surfaces, kRefined * static_cast<std::uint32_t>(patches.size()), options.threads, &patches);
+  uncover_patches(rays, options.threads, &patches);
+  if (patches.empty()) return failure("the scene has no surface that light could reach");
   std::vector<Outlook> looks;
   add_backs(rays, options.threads, &patches, &looks);
   std::vector<double> closed, area;
@@ -127,9 +132,7 @@ Status solve_radiosity(const FrameData& frame, const RadiosityOptions& options, 
     closed.push_back(1 - looks[i].open), area.push_back(patches[i].area), albedo.push_back(patches[i].albedo);
   }
   parallel_for(static_cast<std::uint32_t>(patches.size()), options.threads, [&](std::uint32_t i) {
-    Vec3d irradiance = {0, 0, 0};
-    for (const PatchSample& s : patches[i].samples)
-      irradiance += light_irradiance(rays, {s.point, s.normal, patches[i].lift}) * (1.0 / kPatchSamples);
+    const Vec3d irradiance = mean_light(rays, patches[i]);
     const bool shines = !patches[i].is_back || patches[i].double_sided;
     first[i] = (shines ? patches[i].emission : Vec3d{0, 0, 0}) +
                patches[i].albedo * (irradiance * (1 / kPi) + to_double(scene.info.background) * looks[i].open);
