@@ -28,6 +28,20 @@ inline Vec3 radiosity_of_grid(const Scene& scene, const RadiosityGrid& grid, con
   return how == Reconstruction::bilinear ? bilinear_patch(corners, s, t) : constant_patch(corners);
 }
 
+// The corners of the part of a triangle around a point, whose barycentric weights become those in the part.
+inline const RadiosityCorners& corners_around(const Scene& scene, std::uint32_t place, float* weight) {
+  if (!is_split(place)) return scene.radiosity_corners[place];
+  while (place & kRadiositySplitBit) {
+    const RadiositySplit& split = scene.radiosity_splits[place & kRadiosityPartMax];
+    const std::uint32_t turn = turn_of(place);
+    const float a = weight[turn], b = weight[turn < 2 ? turn + 1 : 0], c = weight[turn ? turn - 1 : 2];
+    const bool second = a < b;  // beyond the middle of AB
+    weight[0] = second ? 2 * a : a - b, weight[1] = second ? b - a : 2 * b, weight[2] = c;
+    place = split.part[second];
+  }
+  return scene.radiosity_corners[place & kRadiosityPartMax];
+}
+
 struct RadiosityIndirect {
   static constexpr const char* kName = "radiosity";
   static constexpr EffectMask kEffects = bit(Effect::radiosity);
@@ -58,13 +72,14 @@ struct RadiosityIndirect {
       // Rounding may leave the range of the limited patches.
       return albedo * min(max(value, Vec3{0, 0, 0}), scene.radiosity_info[0].value_max);
     }
+    float weight[3] = {w, at.u, at.v};
     const RadiosityCorners corners = place == kRadiosityAtVertices
                                          ? RadiosityCorners{t.vertex(0), t.vertex(1), t.vertex(2)}
-                                         : scene.radiosity_corners[place];
+                                         : corners_around(scene, place, weight);
     const Vec3 &a = scene.radiosity_values[corners.value[0]], &b = scene.radiosity_values[corners.value[1]],
                &c = scene.radiosity_values[corners.value[2]];
     const bool constant = at.reconstruction == Reconstruction::constant;
-    const Vec3 value = constant ? (a + b + c) * (1.0f / 3) : a * w + b * at.u + c * at.v;
+    const Vec3 value = constant ? (a + b + c) * (1.0f / 3) : a * weight[0] + b * weight[1] + c * weight[2];
     return albedo * min(max(value, Vec3{0, 0, 0}), scene.radiosity_info[0].value_max);
   }
   static Vec3d exact(const Scene&, const Vec3d&) { return {0, 0, 0}; }

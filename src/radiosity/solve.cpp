@@ -6,7 +6,7 @@
 
 #include "base/check.h"
 #include "base/fmath.h"
-#include "radiosity/receivers.h"
+#include "radiosity/corners.h"
 #include "radiosity/refine.h"
 #include "radiosity/tangents.h"
 
@@ -17,6 +17,7 @@ constexpr std::uint32_t kPatchRays = 36, kNodeRays = 64;
 constexpr std::uint32_t kRefined = 4;  // largest ratio of numbers of patches by refinement
 constexpr double kBackSees = 0.05;     // share of fronts around a back that is worth light of its own
 constexpr double kCovered = 0.9;       // share of back faces around a node that lies inside a body
+constexpr double kSeen = 0.1;  // share of patches in what closes a node's surroundings, below which it lies inside, too
 
 Outlook look_around_patch(const SceneRays& rays, const Patch& patch, std::uint32_t seed) {
   Outlook mean;
@@ -62,6 +63,7 @@ Vec3d gather(const SceneRays& rays, const std::vector<Patch>& patches, const std
   // Surfaces fill the directions that are not open: this takes out the error of approximate factors and of visibility
   // by few rays.
   const double closed = 1 - outlook.open;
+  if (closed > 0.5 && seen < kSeen * closed) return {-1, 0, 0};
   if (seen > 0) sum = sum * std::min(2.0, closed / seen);
   return sum + to_double(rays.frame.scene->info.background) * outlook.open;
 }
@@ -99,7 +101,8 @@ Vec3 largest_value(const RadiositySolution& s) {
 
 std::size_t RadiositySolution::bytes() const {
   return info.size() * sizeof info[0] + triangles.size() * sizeof triangles[0] + grids.size() * sizeof grids[0] +
-         nodes.size() * sizeof nodes[0] + corners.size() * sizeof corners[0] + values.size() * sizeof values[0];
+         nodes.size() * sizeof nodes[0] + corners.size() * sizeof corners[0] + values.size() * sizeof values[0] +
+         splits.size() * sizeof splits[0];
 }
 
 void RadiositySolution::view(Scene* scene) const {
@@ -109,6 +112,7 @@ void RadiositySolution::view(Scene* scene) const {
   scene->radiosity_info = array(info), scene->radiosity_triangles = array(triangles);
   scene->radiosity_grids = array(grids), scene->radiosity_nodes = array(nodes);
   scene->radiosity_corners = array(corners), scene->radiosity_values = array(values);
+  scene->radiosity_splits = array(splits);
 }
 
 Status solve_radiosity(const FrameData& frame, const RadiosityOptions& options, const SolverProgress& progress,
@@ -155,7 +159,7 @@ Status solve_radiosity(const FrameData& frame, const RadiosityOptions& options, 
     if (patch.is_back)
       for (std::uint32_t t : patch.triangles) back[t] = 1;
   Places places = place_receivers(scene, surfaces, options, front, back, solution);
-  std::vector<char> known(solution->nodes.size(), 1);
+  std::vector<char> known(solution->nodes.size(), 1), known_values(solution->values.size(), 1);
   const std::uint32_t node_count = static_cast<std::uint32_t>(places.nodes.size());
   const std::uint32_t count = node_count + static_cast<std::uint32_t>(places.values.size());
   std::atomic<std::uint32_t> done{0};
@@ -169,8 +173,9 @@ Status solve_radiosity(const FrameData& frame, const RadiosityOptions& options, 
     if (i < node_count) {
       known[places.nodes[i].node] = !covered;
       if (!covered) solution->nodes[places.nodes[i].node].value = to_float(light);
-    } else if (!covered) {
-      solution->values[places.values[i - node_count].value] = to_float(light);
+    } else {
+      known_values[places.values[i - node_count].value] = !covered;
+      if (!covered) solution->values[places.values[i - node_count].value] = to_float(light);
     }
     if (!progress(kFactorsShare + (1 - kFactorsShare) * ++done / count)) stop = true;
   });
@@ -182,6 +187,7 @@ Status solve_radiosity(const FrameData& frame, const RadiosityOptions& options, 
     fill_covered(grid, &of_grid, nodes);
     set_tangents(nodes, grid.columns, grid.rows, true);
   }
+  fill_covered_values(scene, &known_values, solution);
   solution->info.push_back({largest_value(*solution)});
   return success();
 }

@@ -56,6 +56,37 @@ TEST_CASE("radiosity_is_looked_up_by_triangle_side_and_place") {
   CHECK(fronts.at(0, .25f, .5f, false, R::bilinear) == 0);
 }
 
+// Goal: a hit on a divided triangle finds the part around it. Method: ABC halved on BC, and the half with B on its edge
+// to A; values that are linear in each part, against barycentric weights by areas.
+TEST_CASE("radiosity_of_divided_triangles_is_that_of_the_part") {
+  Stored s;
+  const Vec2 places[5] = {{0, 0}, {1, 0}, {0, 1}, {.5f, .5f}, {.5f, 0}};  // A, B, C, M of BC, N of AB, as (u, v)
+  const Vec3 values[5] = {{1, 0, 0}, {2, 0, 0}, {4, 0, 0}, {7, 0, 0}, {1.5f, 0, 0}};
+  // B M A and M C A; then the edge AB, from the third of B M A to its first.
+  const RadiosityCorners corners[3] = {{{3, 2, 0}}, {{0, 4, 3}}, {{4, 1, 3}}};
+  const std::uint32_t turn = kRadiosityTurnShift;
+  const RadiositySplit splits[2] = {{{kRadiositySplitBit | 2u << turn | 1, 0}}, {{1u | 1u << kRadiosityLevelShift, 2}}};
+  s.places[1] = kRadiositySplitBit | 1u << turn;
+  s.info.value_max = {8, 8, 8};
+  s.scene.radiosity_corners = {corners, 3}, s.scene.radiosity_values = {values, 5};
+  s.scene.radiosity_splits = {splits, 2};
+  auto area = [](const Vec2& a, const Vec2& b, const Vec2& c) {
+    return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
+  };
+  int parts = 0;
+  for (float u = .0625f; u < 1; u += .125f)
+    for (float v = .03125f; u + v < 1; v += .0625f)
+      for (const RadiosityCorners& part : corners) {
+        const Vec2 &a = places[part.value[0]], &b = places[part.value[1]], &c = places[part.value[2]], p = {u, v};
+        const float whole = area(a, b, c), x = area(p, b, c) / whole, y = area(a, p, c) / whole, z = 1 - x - y;
+        if (x < 0 || y < 0 || z < 0) continue;
+        ++parts;
+        const float wanted = x * values[part.value[0]].x + y * values[part.value[1]].x + z * values[part.value[2]].x;
+        CHECK(s.at(1, u, v, true, Reconstruction::bicubic) == doctest::Approx(.5 * static_cast<double>(wanted)));
+      }
+  CHECK(parts > 40);
+}
+
 // Goal: Phong's lobe reflects stored light as a diffuse surface of its mean albedo; no other lobe does, nor an unlit
 // material, nor a lobe that is switched off.
 TEST_CASE("radiosity_is_reflected_by_glossy_lobes") {
