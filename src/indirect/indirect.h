@@ -33,6 +33,7 @@ struct IndirectPoint {
   float u = 0, v = 0;  // in the triangle
   bool front = true;   // the viewer's side is the triangle's front
   Reconstruction reconstruction = Reconstruction::bicubic;
+  Vec3 glossy = {0, 0, 0};  // reflectance of a lobe that the surroundings do not light otherwise
 };
 
 // When the reference includes a method's light: never; in its lighting model only, where the method stands in for light

@@ -1,9 +1,11 @@
 // Radiosity: light between diffuse surfaces, solved when the scene was baked and stored with it [Shirley 1990]. Direct
-// light is not in it; that is traced for each pixel [Jansen92].
+// light is not in it; that is traced for each pixel [Jansen92]. Phong's lobe, which mirrors no surroundings, reflects
+// it as a diffuse surface of the same mean albedo would.
 #pragma once
 #include "effect/effect_probe.h"
 #include "indirect/indirect.h"
 #include "indirect/reconstruct/hermite.h"
+#include "indirect/surroundings.h"
 
 namespace pocketray {
 
@@ -26,6 +28,20 @@ inline Vec3 radiosity_of_grid(const Scene& scene, const RadiosityGrid& grid, con
   return how == Reconstruction::bilinear ? bilinear_patch(corners, s, t) : constant_patch(corners);
 }
 
+// The corners of the part of a triangle around a point, whose barycentric weights become those in the part.
+inline const RadiosityCorners& corners_around(const Scene& scene, std::uint32_t place, float* weight) {
+  if (!is_split(place)) return scene.radiosity_corners[place];
+  while (place & kRadiositySplitBit) {
+    const RadiositySplit& split = scene.radiosity_splits[place & kRadiosityPartMax];
+    const std::uint32_t turn = turn_of(place);
+    const float a = weight[turn], b = weight[turn < 2 ? turn + 1 : 0], c = weight[turn ? turn - 1 : 2];
+    const bool second = a < b;  // beyond the middle of AB
+    weight[0] = second ? 2 * a : a - b, weight[1] = second ? b - a : 2 * b, weight[2] = c;
+    place = split.part[second];
+  }
+  return scene.radiosity_corners[place & kRadiosityPartMax];
+}
+
 struct RadiosityIndirect {
   static constexpr const char* kName = "radiosity";
   static constexpr EffectMask kEffects = bit(Effect::radiosity);
@@ -38,7 +54,9 @@ struct RadiosityIndirect {
   static const void* prepare(const Scene&, Arena*) { return nullptr; }
   static Vec3 radiance(const IndirectPoint& at) {
     const Scene& scene = at.scene;
-    if (scene.radiosity_triangles.empty() || is_zero(at.diffuse)) return {0, 0, 0};  // --effects all
+    if (scene.radiosity_triangles.empty()) return {0, 0, 0};  // --effects all
+    const Vec3 albedo = at.diffuse + at.glossy * kPhongAlbedo;
+    if (is_zero(albedo)) return {0, 0, 0};
     effect_entered<Effect::radiosity>();
     const std::uint32_t side = at.front ? at.triangle : at.triangle + scene.triangles.count;
     if (side >= scene.radiosity_triangles.count) return {0, 0, 0};
@@ -52,21 +70,24 @@ struct RadiosityIndirect {
       const RadiosityGrid& grid = scene.radiosity_grids[place & ~kRadiosityGridBit];
       const Vec3 value = radiosity_of_grid(scene, grid, point, at.reconstruction);
       // Rounding may leave the range of the limited patches.
-      return at.diffuse * min(max(value, Vec3{0, 0, 0}), scene.radiosity_info[0].value_max);
+      return albedo * min(max(value, Vec3{0, 0, 0}), scene.radiosity_info[0].value_max);
     }
+    float weight[3] = {w, at.u, at.v};
     const RadiosityCorners corners = place == kRadiosityAtVertices
                                          ? RadiosityCorners{t.vertex(0), t.vertex(1), t.vertex(2)}
-                                         : scene.radiosity_corners[place];
+                                         : corners_around(scene, place, weight);
     const Vec3 &a = scene.radiosity_values[corners.value[0]], &b = scene.radiosity_values[corners.value[1]],
                &c = scene.radiosity_values[corners.value[2]];
     const bool constant = at.reconstruction == Reconstruction::constant;
-    const Vec3 value = constant ? (a + b + c) * (1.0f / 3) : a * w + b * at.u + c * at.v;
-    return at.diffuse * min(max(value, Vec3{0, 0, 0}), scene.radiosity_info[0].value_max);
+    const Vec3 value = constant ? (a + b + c) * (1.0f / 3) : a * weight[0] + b * weight[1] + c * weight[2];
+    return albedo * min(max(value, Vec3{0, 0, 0}), scene.radiosity_info[0].value_max);
   }
   static Vec3d exact(const Scene&, const Vec3d&) { return {0, 0, 0}; }
   static float bound(const Scene& scene, const Material& material) {
     if (scene.radiosity_info.empty()) return 0;
-    return max_component(material.diffuse * scene.radiosity_info[0].value_max);
+    Vec3 albedo = material.diffuse;
+    if (!reflects_surroundings(material)) albedo += material.specular * kPhongAlbedo;
+    return max_component(albedo * scene.radiosity_info[0].value_max);
   }
 };
 

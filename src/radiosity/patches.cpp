@@ -7,6 +7,7 @@
 
 #include "base/check.h"
 #include "base/fmath.h"
+#include "brdf/brdf_list.h"
 #include "effect/settings.h"
 #include "scene/metallic_roughness.h"
 #include "shade/texture.h"
@@ -34,17 +35,23 @@ struct Facet {
   std::uint32_t triangle;
 };
 
-// Samples that share the area evenly.
-void place_samples(const std::vector<Facet>& facets, Patch* patch) {
+double radical_inverse(int i) {
+  double v = 0;
+  for (double digit = 0.5; i; i >>= 1, digit *= 0.5) v += (i & 1) * digit;
+  return v;
+}
+
+// Samples that share the area evenly: Hammersley's points, warped into the facets.
+void place_samples(const std::vector<Facet>& facets, double area, int count, PatchSample* samples) {
   std::size_t at = 0;
   double before = 0;
-  for (int i = 0; i < kPatchSamples; ++i) {
-    const double wanted = (i + 0.5) / kPatchSamples * patch->area;
+  for (int i = 0; i < count; ++i) {
+    const double wanted = (i + 0.5) / count * area;
     while (at + 1 < facets.size() && before + facets[at].area <= wanted) before += facets[at++].area;
     const Facet& f = facets[at];
     const double u = std::min(1.0, std::max(0.0, (wanted - before) / f.area));
-    const double root = std::sqrt(u), v = (i % 2) * 0.5 + 0.25;
-    patch->samples[i] = {f.a * (1 - root) + f.b * (root * (1 - v)) + f.c * (root * v), f.normal, f.triangle};
+    const double root = std::sqrt(u), v = radical_inverse(i) + 0.5 / count;
+    samples[i] = {f.a * (1 - root) + f.b * (root * (1 - v)) + f.c * (root * v), f.normal, f.triangle};
   }
 }
 
@@ -64,7 +71,9 @@ void finish(const std::vector<Facet>& facets, Patch* patch) {
   for (const Facet& f : facets)
     for (const Vec3d& p : {f.a, f.b, f.c}) patch->radius = std::max(patch->radius, length(p - patch->centre));
   patch->lift = kLift * patch->radius;
-  place_samples(facets, patch);
+  place_samples(facets, patch->area, kPatchSamples, patch->samples);
+  patch->light_samples.resize(kLightSamples);
+  place_samples(facets, patch->area, kLightSamples, patch->light_samples.data());
 }
 
 // Albedo at a point of a triangle, with texture and vertex colours.
@@ -90,8 +99,9 @@ Vec3d albedo_at(const Scene& scene, std::uint32_t triangle, const Vec3d& point) 
     }
     tint *= color;
   }
-  const Vec3d glossy = to_double(m.specular) + to_double(m.mirror);
-  const Vec3d tinted = to_double(m.specular_tinted) + to_double(m.mirror_tinted);
+  const double lobe = m.brdf == kPhong ? static_cast<double>(kPhongAlbedo) : 1;
+  const Vec3d glossy = to_double(m.specular) * lobe + to_double(m.mirror);
+  const Vec3d tinted = to_double(m.specular_tinted) * lobe + to_double(m.mirror_tinted);
   if (scene.material_maps.count && has_lobe_map(scene.material_maps[t.material()])) {
     const MaterialMaps& maps = scene.material_maps[t.material()];
     double metallic = double(maps.metallic);
@@ -110,7 +120,7 @@ Vec3d albedo_at(const Scene& scene, std::uint32_t triangle, const Vec3d& point) 
 
 Patch patch_of(const Material& m) {
   Patch patch;
-  patch.is_back = false, patch.double_sided = m.double_sided && is_zero(m.transmission);
+  patch.is_back = patch.is_flat = false, patch.double_sided = m.double_sided && is_zero(m.transmission);
   patch.emission = to_double(m.emission);
   return patch;
 }
@@ -124,14 +134,35 @@ void set_albedo(const Scene& scene, const Material& m, Patch* patch) {
   for (int axis = 0; axis < 3; ++axis) patch->albedo[axis] = std::min(std::max(patch->albedo[axis], 0.0), kAlbedoMax);
 }
 
+struct Piece {
+  Polygon polygon;
+  std::uint32_t triangle;
+};
+
+// Nothing is added for pieces without area.
+void add_cell(const Scene& scene, const FlatSurface& flat, const std::vector<Piece>& pieces,
+              std::vector<Patch>* patches) {
+  Patch patch = patch_of(scene.materials[flat.material]);
+  patch.is_flat = true;
+  std::vector<Facet> facets;
+  for (const Piece& piece : pieces) {
+    const Polygon& p = piece.polygon;
+    patch.pieces.push_back(p), patch.piece_triangles.push_back(piece.triangle);
+    for (std::size_t i = 2; i < p.size(); ++i) {
+      const double area = 0.5 * length(cross(p[i - 1] - p[0], p[i] - p[0]));
+      if (area > 0) facets.push_back({p[0], p[i - 1], p[i], flat.normal, area, piece.triangle});
+    }
+  }
+  if (facets.empty()) return;
+  finish(facets, &patch);
+  set_albedo(scene, scene.materials[flat.material], &patch);
+  patches->push_back(patch);
+}
+
 void add_cells(const Scene& scene, const FlatSurface& flat, double side, std::vector<Patch>* patches) {
   const int columns = std::max(1, static_cast<int>(std::ceil(flat.width / side - 0.25)));
   const int rows = std::max(1, static_cast<int>(std::ceil(flat.height / side - 0.25)));
   const double width = flat.width / columns, height = flat.height / rows;
-  struct Piece {
-    Polygon polygon;
-    std::uint32_t triangle;
-  };
   std::vector<std::vector<Piece>> cells(static_cast<std::size_t>(columns * rows));
   for (std::uint32_t t : flat.triangles) {
     const Polygon whole = {corner_of(scene, t, 0), corner_of(scene, t, 1), corner_of(scene, t, 2)};
@@ -151,23 +182,7 @@ void add_cells(const Scene& scene, const FlatSurface& flat, double side, std::ve
       }
     }
   }
-  for (const std::vector<Piece>& pieces : cells) {
-    if (pieces.empty()) continue;
-    Patch patch = patch_of(scene.materials[flat.material]);
-    std::vector<Facet> facets;
-    for (const Piece& piece : pieces) {
-      const Polygon& p = piece.polygon;
-      patch.pieces.push_back(p);
-      for (std::size_t i = 2; i < p.size(); ++i) {
-        const double area = 0.5 * length(cross(p[i - 1] - p[0], p[i] - p[0]));
-        if (area > 0) facets.push_back({p[0], p[i - 1], p[i], flat.normal, area, piece.triangle});
-      }
-    }
-    if (facets.empty()) continue;
-    finish(facets, &patch);
-    set_albedo(scene, scene.materials[flat.material], &patch);
-    patches->push_back(patch);
-  }
+  for (const std::vector<Piece>& pieces : cells) add_cell(scene, flat, pieces, patches);
 }
 
 void add_clusters(const Scene& scene, const Surfaces& surfaces, std::vector<Patch>* patches) {
@@ -200,6 +215,7 @@ Patch back_of(const Patch& front) {
   back.normal = -front.normal;
   for (Polygon& piece : back.pieces) std::reverse(piece.begin(), piece.end());
   for (PatchSample& sample : back.samples) sample.normal = -sample.normal;
+  for (PatchSample& sample : back.light_samples) sample.normal = -sample.normal;
   return back;
 }
 
@@ -214,7 +230,23 @@ double patch_form_factor(const Vec3d& point, const Vec3d& normal, const Patch& p
   }
   double sum = 0;
   for (const Polygon& piece : patch.pieces) sum += point_form_factor(point, normal, piece);
-  return sum;
+  return sum * patch.uncovered;
+}
+
+std::vector<Patch> quarters_of(const Scene& scene, const Surfaces& surfaces, const Patch& patch) {
+  CHECK(patch.is_flat);
+  const FlatSurface& flat = surfaces.flat[surfaces.flat_of[patch.triangles[0]]];
+  std::vector<Patch> quarters;
+  for (int q = 0; q < 4; ++q) {
+    const Vec3d s = q & 1 ? flat.s : -flat.s, t = q & 2 ? flat.t : -flat.t;
+    std::vector<Piece> pieces;
+    for (std::size_t i = 0; i < patch.pieces.size(); ++i) {
+      const Polygon part = clip(clip(patch.pieces[i], patch.centre, s, 0), patch.centre, t, 0);
+      if (part.size() >= 3) pieces.push_back({part, patch.piece_triangles[i]});
+    }
+    add_cell(scene, flat, pieces, &quarters);
+  }
+  return quarters;
 }
 
 std::vector<Patch> make_patches(const Scene& scene, const Surfaces& surfaces) {

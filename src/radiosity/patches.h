@@ -4,7 +4,7 @@
 
 namespace pocketray {
 
-constexpr int kPatchSamples = 4;
+constexpr int kPatchSamples = 4, kLightSamples = 64;
 constexpr double kAlbedoMax = 0.99;
 
 struct PatchSample {
@@ -19,17 +19,25 @@ struct Patch {
   Vec3d emission;  // radiance
   Vec3d centre, normal;
   double area, radius;
-  double lift;                           // rays start and end this far above it
-  std::vector<std::uint32_t> triangles;  // that it is part of, or consists of
-  std::vector<Polygon> pieces;           // empty: a cluster of small triangles
+  double uncovered = 1;                        // share that does not lie inside bodies; the area is without the rest
+  double lift;                                 // rays start and end this far above it
+  std::vector<std::uint32_t> triangles;        // that it is part of, or consists of
+  std::vector<Polygon> pieces;                 // empty: a cluster of small triangles
+  std::vector<std::uint32_t> piece_triangles;  // of a flat surface: which triangle each piece is of
   PatchSample samples[kPatchSamples];
-  bool is_back, double_sided;
+  std::vector<PatchSample> light_samples;  // kLightSamples, at which the lights are looked up
+  bool is_back, is_flat, double_sided;     // is_flat: a cell of a flat surface
 };
+
+// Whether light stored on the material's surfaces is ever seen.
+inline bool reflects(const Material& m) { return !m.unlit && !(is_zero(m.diffuse) && is_zero(m.specular)); }
 
 // The front patches of all surfaces: cells of flat surfaces, and clusters of the other triangles by place and
 // orientation.
 std::vector<Patch> make_patches(const Scene& scene, const Surfaces& surfaces);
 Patch back_of(const Patch& front);
+// A patch of a flat surface, divided across and along.
+std::vector<Patch> quarters_of(const Scene& scene, const Surfaces& surfaces, const Patch& patch);
 
 // Unoccluded, from a point.
 double patch_form_factor(const Vec3d& point, const Vec3d& normal, const Patch& patch);

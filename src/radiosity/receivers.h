@@ -1,4 +1,4 @@
-// Where light is stored: the nodes of grids on flat surfaces, and the corners of other triangles.
+// Where light is stored: the nodes of grids on flat surfaces, and the corners of other triangles and their parts.
 #pragma once
 #include "radiosity/solve.h"
 

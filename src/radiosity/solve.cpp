@@ -6,15 +6,18 @@
 
 #include "base/check.h"
 #include "base/fmath.h"
-#include "radiosity/receivers.h"
+#include "radiosity/corners.h"
+#include "radiosity/refine.h"
 #include "radiosity/tangents.h"
 
 namespace pocketray {
 namespace {
 
 constexpr std::uint32_t kPatchRays = 36, kNodeRays = 64;
-constexpr double kBackSees = 0.05;  // share of fronts around a back that is worth light of its own
-constexpr double kCovered = 0.9;    // share of back faces around a node that lies inside a body
+constexpr std::uint32_t kRefined = 4;  // largest ratio of numbers of patches by refinement
+constexpr double kBackSees = 0.05;     // share of fronts around a back that is worth light of its own
+constexpr double kCovered = 0.9;       // share of back faces around a node that lies inside a body
+constexpr double kSeen = 0.1;  // share of patches in what closes a node's surroundings, below which it lies inside, too
 
 Outlook look_around_patch(const SceneRays& rays, const Patch& patch, std::uint32_t seed) {
   Outlook mean;
@@ -60,6 +63,7 @@ Vec3d gather(const SceneRays& rays, const std::vector<Patch>& patches, const std
   // Surfaces fill the directions that are not open: this takes out the error of approximate factors and of visibility
   // by few rays.
   const double closed = 1 - outlook.open;
+  if (closed > 0.5 && seen < kSeen * closed) return {-1, 0, 0};
   if (seen > 0) sum = sum * std::min(2.0, closed / seen);
   return sum + to_double(rays.frame.scene->info.background) * outlook.open;
 }
@@ -97,7 +101,8 @@ Vec3 largest_value(const RadiositySolution& s) {
 
 std::size_t RadiositySolution::bytes() const {
   return info.size() * sizeof info[0] + triangles.size() * sizeof triangles[0] + grids.size() * sizeof grids[0] +
-         nodes.size() * sizeof nodes[0] + corners.size() * sizeof corners[0] + values.size() * sizeof values[0];
+         nodes.size() * sizeof nodes[0] + corners.size() * sizeof corners[0] + values.size() * sizeof values[0] +
+         splits.size() * sizeof splits[0];
 }
 
 void RadiositySolution::view(Scene* scene) const {
@@ -107,6 +112,7 @@ void RadiositySolution::view(Scene* scene) const {
   scene->radiosity_info = array(info), scene->radiosity_triangles = array(triangles);
   scene->radiosity_grids = array(grids), scene->radiosity_nodes = array(nodes);
   scene->radiosity_corners = array(corners), scene->radiosity_values = array(values);
+  scene->radiosity_splits = array(splits);
 }
 
 Status solve_radiosity(const FrameData& frame, const RadiosityOptions& options, const SolverProgress& progress,
@@ -119,6 +125,9 @@ Status solve_radiosity(const FrameData& frame, const RadiosityOptions& options, 
   const Surfaces surfaces = find_surfaces(scene, options.patch_count);
   if (!(surfaces.total_area > 0)) return failure("the scene has no surface that could reflect light");
   std::vector<Patch> patches = make_patches(scene, surfaces);
+  refine_patches(rays, surfaces, kRefined * static_cast<std::uint32_t>(patches.size()), options.threads, &patches);
+  uncover_patches(rays, options.threads, &patches);
+  if (patches.empty()) return failure("the scene has no surface that light could reach");
   std::vector<Outlook> looks;
   add_backs(rays, options.threads, &patches, &looks);
   std::vector<double> closed, area;
@@ -127,9 +136,7 @@ Status solve_radiosity(const FrameData& frame, const RadiosityOptions& options, 
     closed.push_back(1 - looks[i].open), area.push_back(patches[i].area), albedo.push_back(patches[i].albedo);
   }
   parallel_for(static_cast<std::uint32_t>(patches.size()), options.threads, [&](std::uint32_t i) {
-    Vec3d irradiance = {0, 0, 0};
-    for (const PatchSample& s : patches[i].samples)
-      irradiance += light_irradiance(rays, {s.point, s.normal, patches[i].lift}) * (1.0 / kPatchSamples);
+    const Vec3d irradiance = mean_light(rays, patches[i]);
     const bool shines = !patches[i].is_back || patches[i].double_sided;
     first[i] = (shines ? patches[i].emission : Vec3d{0, 0, 0}) +
                patches[i].albedo * (irradiance * (1 / kPi) + to_double(scene.info.background) * looks[i].open);
@@ -152,7 +159,7 @@ Status solve_radiosity(const FrameData& frame, const RadiosityOptions& options, 
     if (patch.is_back)
       for (std::uint32_t t : patch.triangles) back[t] = 1;
   Places places = place_receivers(scene, surfaces, options, front, back, solution);
-  std::vector<char> known(solution->nodes.size(), 1);
+  std::vector<char> known(solution->nodes.size(), 1), known_values(solution->values.size(), 1);
   const std::uint32_t node_count = static_cast<std::uint32_t>(places.nodes.size());
   const std::uint32_t count = node_count + static_cast<std::uint32_t>(places.values.size());
   std::atomic<std::uint32_t> done{0};
@@ -166,8 +173,9 @@ Status solve_radiosity(const FrameData& frame, const RadiosityOptions& options, 
     if (i < node_count) {
       known[places.nodes[i].node] = !covered;
       if (!covered) solution->nodes[places.nodes[i].node].value = to_float(light);
-    } else if (!covered) {
-      solution->values[places.values[i - node_count].value] = to_float(light);
+    } else {
+      known_values[places.values[i - node_count].value] = !covered;
+      if (!covered) solution->values[places.values[i - node_count].value] = to_float(light);
     }
     if (!progress(kFactorsShare + (1 - kFactorsShare) * ++done / count)) stop = true;
   });
@@ -179,6 +187,7 @@ Status solve_radiosity(const FrameData& frame, const RadiosityOptions& options, 
     fill_covered(grid, &of_grid, nodes);
     set_tangents(nodes, grid.columns, grid.rows, true);
   }
+  fill_covered_values(scene, &known_values, solution);
   solution->info.push_back({largest_value(*solution)});
   return success();
 }

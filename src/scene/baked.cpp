@@ -26,7 +26,8 @@ static_assert(sizeof(Channel) == 4 * 4 + 2 + 2 && sizeof(Joint) == 4 + 48 && siz
 static_assert(sizeof(SkinWeight) == 8 + 16 && sizeof(MovingMesh) == 8 * 4 + 48, "no padding");
 static_assert(sizeof(RadiosityInfo) == 12 && sizeof(RadiosityGrid) == 3 * 12 + 3 * 4, "no padding");
 static_assert(sizeof(EnvironmentInfo) == 3 * 4 + 10 * 12, "no padding");
-static_assert(sizeof(RadiosityNode) == 4 * 12 && sizeof(RadiosityCorners) == 12, "no padding");
+static_assert(sizeof(RadiosityNode) == 4 * 12 && sizeof(RadiosityCorners) == 12 && sizeof(RadiositySplit) == 8,
+              "no padding");
 
 constexpr std::uint64_t kSectionAlignment = 64;
 constexpr std::uint8_t kMagic[8] = {0x89, 'P', 'R', 'A', 'Y', '\r', '\n', 0x1A};  // as PNG: text-mode copies damage it
@@ -91,8 +92,9 @@ void for_each_array(SceneType& scene, Visit visit) {
   visit("tangents", scene.tangents);
   visit("second_uvs", scene.second_uvs);
   visit("clear_coats", scene.clear_coats);
+  visit("radiosity_splits", scene.radiosity_splits);
 }
-constexpr std::uint32_t kArrayCount = 38;
+constexpr std::uint32_t kArrayCount = 39;
 constexpr std::uint32_t kSectionCount = 1 + kArrayCount;  // kind 0 is SceneInfo
 
 constexpr std::uint64_t aligned(std::uint64_t offset) {
@@ -103,11 +105,7 @@ constexpr std::uint64_t first_offset(std::uint32_t section_count) {
 }
 // Older files lack the last arrays.
 constexpr std::uint32_t section_count_of(std::uint32_t version) {
-  return version < 8    ? kSectionCount - 6
-         : version < 9  ? kSectionCount - 4
-         : version < 10 ? kSectionCount - 2
-         : version < 11 ? kSectionCount - 1
-                        : kSectionCount;
+  return version < 8 ? 33 : version < 9 ? 35 : version < 10 ? 37 : version < 11 ? 38 : kSectionCount;
 }
 
 // zlib counts in uInt, which may be narrower than size_t.

@@ -1,6 +1,6 @@
 // A stored radiosity solution: the indirect light that reaches diffuse surfaces, as irradiance / π, which times the
 // albedo is radiance. Flat parts of the scene carry grids, whose cells are the patches of [Bastos92]; other triangles a
-// value at each corner.
+// value at each corner, and large ones of them at the corners of the parts into which they are halved.
 #pragma once
 #include <cstdint>
 
@@ -30,8 +30,28 @@ struct RadiosityCorners {
   std::uint32_t value[3];
 };
 
-// What a side of a triangle refers to: nothing (kNone), a grid, corners, or the values with its vertices' indices.
+// What a side of a triangle refers to: nothing (kNone), a grid, corners, the values with its vertices' indices, or a
+// split.
 constexpr std::uint32_t kRadiosityAtVertices = 0x7FFFFFFFu;
 constexpr std::uint32_t kRadiosityGridBit = 0x80000000u;
+
+// A triangle halved at the middle M of an edge AB, opposite C, into AMC and MBC. A reference to it has
+// kRadiositySplitBit and, as its turn, the place of A among the corners of the triangle. Parts of it are such
+// references, or indices of corners; from bit kRadiosityLevelShift on, part[0] has the level of the split itself: parts
+// are of higher levels.
+struct RadiositySplit {
+  std::uint32_t part[2];
+};
+constexpr std::uint32_t kRadiositySplitBit = 0x40000000u;
+constexpr int kRadiosityTurnShift = 28, kRadiosityLevelShift = 23;
+constexpr std::uint32_t kRadiosityPartMax = (1u << kRadiosityLevelShift) - 1, kRadiosityLevelMax = 31;
+
+inline bool is_split(std::uint32_t place) {
+  return (place & (kRadiosityGridBit | kRadiositySplitBit)) == kRadiositySplitBit && place != kRadiosityAtVertices;
+}
+inline std::uint32_t turn_of(std::uint32_t place) { return place >> kRadiosityTurnShift & 3; }
+inline std::uint32_t level_of(const RadiositySplit& split) {
+  return split.part[0] >> kRadiosityLevelShift & kRadiosityLevelMax;
+}
 
 }  // namespace pocketray

@@ -35,6 +35,21 @@ Status validate_nodes_of_grids(const Scene& scene) {
   return success();
 }
 
+// Descents end because levels rise, up to kRadiosityLevelMax.
+Status validate_split(const Scene& scene, std::uint32_t index) {
+  const RadiositySplit& split = scene.radiosity_splits[index];
+  for (std::uint32_t part : split.part) {
+    const bool is_whole = !(part & kRadiositySplitBit);
+    const std::uint32_t at = part & kRadiosityPartMax,
+                        limit = is_whole ? scene.radiosity_corners.count : scene.radiosity_splits.count;
+    if (part & kRadiosityGridBit || at >= limit || turn_of(part) > (is_whole ? 0 : 2))
+      return failure("radiosity_splits[%u] has part %#x of %u %s", index, part, limit, is_whole ? "corners" : "splits");
+    if (!is_whole && level_of(scene.radiosity_splits[at]) <= level_of(split))
+      return failure("radiosity_splits[%u] has a part of no higher level", index);
+  }
+  return success();
+}
+
 }  // namespace
 
 Status validate_radiosity(const Scene& scene) {
@@ -53,12 +68,18 @@ Status validate_radiosity(const Scene& scene) {
     for (std::uint32_t value : scene.radiosity_corners[i].value)
       if (value >= scene.radiosity_values.count)
         return failure("radiosity_corners[%u] has value %u of %u", i, value, scene.radiosity_values.count);
+  for (std::uint32_t i = 0; i < scene.radiosity_splits.count; ++i) RETURN_IF_ERROR(validate_split(scene, i));
   for (std::uint32_t i = 0; i < count; ++i) {
     const std::uint32_t place = scene.radiosity_triangles[i];
     if (place == kNone) continue;
     if (place == kRadiosityAtVertices) {
       if (scene.radiosity_values.count >= scene.positions.count) continue;
       return failure("%u radiosity_values for %u vertices", scene.radiosity_values.count, scene.positions.count);
+    }
+    if (is_split(place)) {
+      const bool has_level = place >> kRadiosityLevelShift & kRadiosityLevelMax;
+      if ((place & kRadiosityPartMax) < scene.radiosity_splits.count && turn_of(place) <= 2 && !has_level) continue;
+      return failure("radiosity_triangles[%u] refers to split %#x of %u", i, place, scene.radiosity_splits.count);
     }
     const bool on_grid = place & kRadiosityGridBit;
     const std::uint32_t index = place & ~kRadiosityGridBit,

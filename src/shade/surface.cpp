@@ -1,6 +1,7 @@
 #include "shade/surface.h"
 
 #include "effect/effect_probe.h"
+#include "indirect/surroundings.h"
 #include "shade/footprint.h"
 #include "shade/instantiate.h"
 #include "shade/texture.h"
@@ -58,8 +59,12 @@ inline void add_glow(const FrameData& frame, Surface* s) {
     }
   }
   if constexpr ((mask & kEffectsBuilt & IndirectList::kEffects) != 0) {
-    const IndirectPoint point = {scene,           nullptr,  s->point, s->normal, s->diffuse,
-                                 s->hit.triangle, s->hit.u, s->hit.v, s->front,  frame.settings.reconstruction};
+    IndirectPoint point = {scene,           nullptr,  s->point, s->normal, s->diffuse,
+                           s->hit.triangle, s->hit.u, s->hit.v, s->front,  frame.settings.reconstruction};
+    if constexpr (has(mask, Effect::radiosity)) {
+      if (!m.unlit && has(frame.mask, Effect::specular) && !reflects_surroundings(m))
+        point.glossy = reflectance_at(*s, m.specular, m.specular_tinted);
+    }
     IndirectList::add_radiance<mask>(frame.indirect.prepared, point, &s->glow);
   }
   if constexpr (has(mask, Effect::emission)) {

@@ -310,15 +310,17 @@ TEST_CASE("instant_radiosity_keeps_lights_as_the_bounds_change") {
   CHECK(lights_kept(a, b) > a.count / 2);
 }
 
-// Goal: coherence, which retraces pixels alone, stays off, and says why.
-TEST_CASE("instant_radiosity_switches_coherence_off") {
+// Goal: coherence by tables of all rays, which do not tell whose light a pixel takes, stays off, and says why.
+TEST_CASE("instant_radiosity_is_not_followed_by_tables") {
   Room room(true);
   Settings settings = instant(64);
   settings.coherence = CoherenceMode::on;
+  CHECK(rendered(room.scene, settings)->renderer.coherence_state.planned);
+  settings.coherence_by_tables = true;
   std::unique_ptr<TestRenderer> t = rendered(room.scene, settings);
   CHECK_FALSE(t->renderer.coherence_state.planned);
   REQUIRE(t->renderer.coherence_state.unplanned_because != nullptr);
-  CHECK(std::string(t->renderer.coherence_state.unplanned_because).find("neighbouring pixels") != std::string::npos);
+  CHECK(std::string(t->renderer.coherence_state.unplanned_because).find("mix their light") != std::string::npos);
 }
 
 // Goal: virtual lights that memory was not planned for are refused.

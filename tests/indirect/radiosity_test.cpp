@@ -3,7 +3,9 @@
 
 #include <doctest/doctest.h>
 
+#include "effect/setting_list.h"
 #include "indirect/indirect_list.h"
+#include "support/generated_scene.h"
 
 using namespace pocketray;
 
@@ -52,6 +54,72 @@ TEST_CASE("radiosity_is_looked_up_by_triangle_side_and_place") {
   Stored fronts;
   fronts.scene.radiosity_triangles.count = 2;
   CHECK(fronts.at(0, .25f, .5f, false, R::bilinear) == 0);
+}
+
+// Goal: a hit on a divided triangle finds the part around it. Method: ABC halved on BC, and the half with B on its edge
+// to A; values that are linear in each part, against barycentric weights by areas.
+TEST_CASE("radiosity_of_divided_triangles_is_that_of_the_part") {
+  Stored s;
+  const Vec2 places[5] = {{0, 0}, {1, 0}, {0, 1}, {.5f, .5f}, {.5f, 0}};  // A, B, C, M of BC, N of AB, as (u, v)
+  const Vec3 values[5] = {{1, 0, 0}, {2, 0, 0}, {4, 0, 0}, {7, 0, 0}, {1.5f, 0, 0}};
+  // B M A and M C A; then the edge AB, from the third of B M A to its first.
+  const RadiosityCorners corners[3] = {{{3, 2, 0}}, {{0, 4, 3}}, {{4, 1, 3}}};
+  const std::uint32_t turn = kRadiosityTurnShift;
+  const RadiositySplit splits[2] = {{{kRadiositySplitBit | 2u << turn | 1, 0}}, {{1u | 1u << kRadiosityLevelShift, 2}}};
+  s.places[1] = kRadiositySplitBit | 1u << turn;
+  s.info.value_max = {8, 8, 8};
+  s.scene.radiosity_corners = {corners, 3}, s.scene.radiosity_values = {values, 5};
+  s.scene.radiosity_splits = {splits, 2};
+  auto area = [](const Vec2& a, const Vec2& b, const Vec2& c) {
+    return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
+  };
+  int parts = 0;
+  for (float u = .0625f; u < 1; u += .125f)
+    for (float v = .03125f; u + v < 1; v += .0625f)
+      for (const RadiosityCorners& part : corners) {
+        const Vec2 &a = places[part.value[0]], &b = places[part.value[1]], &c = places[part.value[2]], p = {u, v};
+        const float whole = area(a, b, c), x = area(p, b, c) / whole, y = area(a, p, c) / whole, z = 1 - x - y;
+        if (x < 0 || y < 0 || z < 0) continue;
+        ++parts;
+        const float wanted = x * values[part.value[0]].x + y * values[part.value[1]].x + z * values[part.value[2]].x;
+        CHECK(s.at(1, u, v, true, Reconstruction::bicubic) == doctest::Approx(.5 * static_cast<double>(wanted)));
+      }
+  CHECK(parts > 40);
+}
+
+// Goal: Phong's lobe reflects stored light as a diffuse surface of its mean albedo; no other lobe does, nor an unlit
+// material, nor a lobe that is switched off.
+TEST_CASE("radiosity_is_reflected_by_glossy_lobes") {
+  Stored s;
+  const Vec3 any = {0, 0, 0};
+  IndirectPoint at = {s.scene, nullptr, any, any, any, 1, .25f, .5f};
+  at.glossy = {.3f, .6f, 0};
+  const Vec3 value = RadiosityIndirect::radiance(at);
+  CHECK(value.x == doctest::Approx(.2 * (.25 * 2 + .5 * 3)));
+  CHECK(value.y == doctest::Approx(.4 * (.25 * 2 + .5 * 3)));
+  Material material;
+  material.diffuse = {.25f, .25f, .25f}, material.specular = {.3f, .3f, .3f}, material.exponent = 20;
+  CHECK(RadiosityIndirect::bound(s.scene, material) == doctest::Approx(.45 * 4));
+  material.brdf = kGgx;
+  CHECK(RadiosityIndirect::bound(s.scene, material) == doctest::Approx(.25 * 4));
+
+  for (std::uint32_t& place : s.places) place = kRadiosityAtVertices;
+  for (Vec3& stored : s.values) stored = {1, 1, 1};
+  s.scene.materials = {&material, 1};
+  Light dark;  // no default lights
+  dark.position = {0, 0, -1}, s.scene.lights = {&dark, 1};
+  Settings settings;
+  settings.width = settings.height = 4, settings.indirect = indirect_choice(Effect::radiosity);
+  auto seen = [&](std::uint32_t brdf, bool unlit, EffectMask off) {
+    material.brdf = brdf, material.unlit = unlit, settings.forced_off = off;
+    auto test = make_renderer(s.scene, settings);
+    REQUIRE(prepare_frame(&test->renderer, 0).ok);
+    return trace_ray(test->renderer, {.5f, .25f, 1}, {0, 0, -1}).x;
+  };
+  CHECK(seen(kPhong, false, 0) == doctest::Approx(.45));
+  CHECK(seen(kPhong, false, bit(Effect::specular)) == doctest::Approx(.25));
+  CHECK(seen(kPhong, true, 0) == doctest::Approx(.25));
+  CHECK(seen(kGgx, false, 0) == doctest::Approx(.25));
 }
 
 // Goal: no value leaves [0, the stored maximum], which the cut-off relies on. Method: tangents that overshoot both

@@ -7,10 +7,9 @@
 #include <vector>
 
 #include "base/fmath.h"
-#include "radiosity/solve.h"
+#include "radiosity/loose.h"
 #include "scene/baked.h"
 #include "scene/builtin_helpers.h"
-#include "support/generated_scene.h"
 #include "support/hard_case.h"
 
 using namespace pocketray;
@@ -33,43 +32,12 @@ Exchange cube_exchange(double albedo) {
   return start_exchange(std::vector<double>(6, 4), std::vector<Vec3d>(6, grey), std::vector<Vec3d>(6, {1, 2, 3}));
 }
 
-// A scene of loose triangles.
-struct Loose {
-  std::vector<Vec3> positions;
-  std::vector<Triangle> triangles;
-  std::vector<Material> materials;
-  std::vector<Light> lights;
-  Scene scene;
-  void add(const Vec3& a, const Vec3& b, const Vec3& c) {
-    const std::uint32_t n = static_cast<std::uint32_t>(positions.size());
-    positions.insert(positions.end(), {a, b, c});
-    triangles.push_back(Triangle(n, n + 1, n + 2, 0));
-  }
-  const Scene& bind() {
-    scene.positions = {positions.data(), static_cast<std::uint32_t>(positions.size())};
-    scene.triangles = {triangles.data(), static_cast<std::uint32_t>(triangles.size())};
-    scene.materials = {materials.data(), static_cast<std::uint32_t>(materials.size())};
-    scene.lights = {lights.data(), static_cast<std::uint32_t>(lights.size())};
-    return scene;
-  }
-};
-
 // A unit sphere seen from inside, by subdivision of an octahedron.
 void add_sphere(int levels, const Vec3& a, const Vec3& b, const Vec3& c, Loose* scene) {
   if (levels == 0) return scene->add(a, c, b);
   const Vec3 ab = normalize(a + b), bc = normalize(b + c), ca = normalize(c + a);
   add_sphere(levels - 1, a, ab, ca, scene), add_sphere(levels - 1, b, bc, ab, scene);
   add_sphere(levels - 1, c, ca, bc, scene), add_sphere(levels - 1, ab, bc, ca, scene);
-}
-
-Status solve(const Scene& scene, std::uint32_t patches, RadiositySolution* solution) {
-  Settings settings;
-  settings.width = settings.height = 4, settings.indirect = IndirectChoice::none;
-  auto test = make_renderer(scene, settings);
-  RadiosityOptions options;
-  options.patch_count = patches, options.threads = 2;
-  return solve_radiosity(
-      test->renderer.frame, options, [](double) { return true; }, solution);
 }
 
 }  // namespace

@@ -246,10 +246,10 @@ TEST_CASE("baked_open_says_what_is_wrong") {
   CHECK(mentions(open_error(file), "checksum"));
   fix_checksum(file);
   CHECK(open_error(file) == "");
-  put_u32(file, kSectionCountAt, 40);
+  put_u32(file, kSectionCountAt, 41);
   fix_checksum(file);
-  CHECK(mentions(open_error(file), "40 sections"));
-  put_u32(file, kSectionCountAt, 39);
+  CHECK(mentions(open_error(file), "41 sections"));
+  put_u32(file, kSectionCountAt, 40);
   put_u32(file, section_at(0) + 16, 2);
   fix_checksum(file);
   CHECK(mentions(open_error(file), "2 info sections"));

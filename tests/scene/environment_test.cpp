@@ -83,8 +83,8 @@ TEST_CASE("environment_octahedral_map_covers_the_sphere_without_seams") {
 }
 
 // Goal: files of earlier versions are read: 7 has no environments, grains and tangents, 8 no grains and tangents, 9 no
-// second texture coordinates, none clear coats. Method: such files, made from today's: a table without the last
-// sections, so that data may begin earlier.
+// second texture coordinates, none clear coats and divided triangles. Method: such files, made from today's: a table
+// without the last sections, so that data may begin earlier.
 TEST_CASE("baked_open_reads_files_of_earlier_versions") {
   const struct {
     std::uint32_t version;
@@ -97,10 +97,10 @@ TEST_CASE("baked_open_reads_files_of_earlier_versions") {
     if (c.version < 8) full.environment_info.clear(), full.environment_texels.clear();
     if (c.version < 9) full.grains.clear(), full.tangents.clear();
     if (c.version < 10) full.second_uvs.clear(), full.textures[1].uv_set = 0;
-    full.clear_coats.clear(), full.bind();
+    full.clear_coats.clear(), full.radiosity_splits.clear(), full.radiosity_triangles[2] = 0, full.bind();
     const BakedFile now = bake(full.scene);
     auto data_begin = [](std::size_t sections) { return (kTableAt + sections * kSectionBytes + 63) / 64 * 64; };
-    const std::size_t begin = data_begin(c.sections), shift = data_begin(39) - begin;
+    const std::size_t begin = data_begin(c.sections), shift = data_begin(40) - begin;
     BakedFile before(now.size() - shift);
     std::memset(before.data(), 0, begin);
     std::memcpy(before.data(), now.data(), kTableAt + c.sections * kSectionBytes);
@@ -120,7 +120,8 @@ TEST_CASE("baked_open_reads_files_of_earlier_versions") {
     CHECK(opened.environment_info.empty() == (c.version < 8));
     CHECK((opened.grains.empty() == (c.version < 9) && opened.tangents.empty() == (c.version < 9)));
     CHECK((opened.second_uvs.empty() == (c.version < 10) && opened.clear_coats.empty()));
-    put_u32(before, kSectionCountAt, 39);
+    CHECK(opened.radiosity_splits.empty());
+    put_u32(before, kSectionCountAt, 40);
     fix_checksum(before);
     CHECK_FALSE(baked_open(before.data(), before.size(), &opened).ok);
   }

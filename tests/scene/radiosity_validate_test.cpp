@@ -22,12 +22,15 @@ struct Stored {
   RadiosityNode nodes[4] = {};
   RadiosityCorners corners = {{0, 1, 2}};
   Vec3 values[3] = {};
+  RadiositySplit splits[2] = {{{kRadiositySplitBit | 2u << kRadiosityTurnShift | 1, 0}},
+                              {{1u << kRadiosityLevelShift, 0}}};
   Scene scene;
   void bind() {
     scene.positions = {positions, 3}, scene.triangles = {&triangle, 1}, scene.materials = {&material, 1};
     scene.radiosity_info = {&info, 1}, scene.radiosity_triangles = {places, 2};
     scene.radiosity_grids = {&grid, 1}, scene.radiosity_nodes = {nodes, 4};
     scene.radiosity_corners = {&corners, 1}, scene.radiosity_values = {values, 3};
+    scene.radiosity_splits = {splits, 2};
   }
 };
 
@@ -59,6 +62,19 @@ TEST_CASE("radiosity_faults_are_named") {
       {[](Stored* s) { s->scene.radiosity_info.count = 0; }, "0 radiosity_info"},
       {[](Stored* s) { s->scene.radiosity_triangles.count = 0; }, "1 radiosity_info"},
       {[](Stored* s) { s->scene.triangles.count = 0; }, "2 sides of 0 triangles"},
+      {[](Stored* s) { s->places[1] = kRadiositySplitBit | 2; },
+       "radiosity_triangles[1] refers to split 0x40000002 of 2"},
+      {[](Stored* s) { s->places[1] = kRadiositySplitBit | 3u << kRadiosityTurnShift; }, "split 0x70000000"},
+      {[](Stored* s) { s->places[1] = kRadiositySplitBit | 1u << kRadiosityLevelShift; }, "split 0x40800000"},
+      {[](Stored* s) { s->splits[1].part[1] = 1; }, "radiosity_splits[1] has part 0x1 of 1 corners"},
+      {[](Stored* s) { s->splits[0].part[1] = kRadiositySplitBit | 2; }, "part 0x40000002 of 2 splits"},
+      {[](Stored* s) { s->splits[0].part[1] = kRadiosityGridBit; }, "part 0x80000000"},
+      {[](Stored* s) { s->splits[0].part[1] = kNone; }, "part 0xffffffff"},
+      {[](Stored* s) { s->splits[0].part[1] = kRadiositySplitBit | 3u << kRadiosityTurnShift | 1; }, "part 0x70000001"},
+      {[](Stored* s) { s->splits[0].part[1] = 1u << kRadiosityTurnShift; }, "part 0x10000000"},
+      {[](Stored* s) { s->splits[1].part[0] = 0; }, "radiosity_splits[0] has a part of no higher level"},
+      {[](Stored* s) { s->splits[0].part[1] = kRadiositySplitBit; },
+       "radiosity_splits[0] has a part of no higher level"},
   };
   Stored sound;
   sound.bind();
