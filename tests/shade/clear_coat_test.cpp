@@ -167,9 +167,9 @@ TEST_CASE("clear_coat_has_normals_of_its_own") {
   for (bool by_map : {false, true}) {
     Sheet s(bumpy, coat_of(1, 0), false);
     s.scene.material_maps.resize(1);
-    s.scene.material_maps[0].normal.texture = s.texture(255, 128, 128);  // would mirror the background
+    s.scene.material_maps[0].normal.texture = s.texture(200, 128, 200);  // would mirror the background
     if (by_map) s.coat().normal.texture = s.texture(1, 128, 200);
-    s.add_ceiling(3);
+    s.add_ceiling(3, true);
     s.scene.material_maps.resize(2);
     s.scene.scene.info.background = {9, 9, 9};
     const Vec3d n = by_map ? normalize(Vec3d{-1, 0, (200 - 128) / 127.0}) : flat;
