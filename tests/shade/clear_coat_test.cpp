@@ -296,6 +296,34 @@ TEST_CASE("clear_coat_is_lit_alike_by_all_ways") {
   }
 }
 
+// Goal: a coat shows lamps so close that they give their light in closed form. Method: the mean of black and dark
+// sheets below a lamp, against that of 256 points of it; the coat is a good part of it.
+TEST_CASE("clear_coat_shows_lamps_close_by") {
+  for (float albedo : {0.0f, 0.02f}) {
+    CAPTURE(albedo);
+    auto mean = [&](float strength, AreaIrradiance how, std::uint32_t points) {
+      GeneratedScene s;
+      add_quad(&s, {-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}, add_material(&s, matte(albedo)));
+      Material lamp = matte(0);
+      lamp.emission = {6, 6, 6};
+      add_quad(&s, {-0.8f, 1.2f, 0.4f}, {0.8f, 1.2f, 0.4f}, {0.8f, 1.2f, 1.2f}, {-0.8f, 1.2f, 1.2f},
+               add_material(&s, lamp));
+      s.clear_coats = {coat_of(strength, 0.6f), {}};
+      aim(&s, {0, -3, 1}, {0, 0, 0}, 20);
+      s.bind();
+      Settings settings;
+      settings.width = 32, settings.height = 24, settings.points_per_area_light = points;
+      settings.area_irradiance = how, settings.cut_off_levels = 0;
+      double sum = 0;
+      for (const Vec3& pixel : render_picture(s.scene, settings)) sum += static_cast<double>(pixel.x);
+      return sum;
+    };
+    const double found = mean(1, AreaIrradiance::analytic, 16), points = mean(1, AreaIrradiance::points, 256);
+    CHECK(found == doctest::Approx(points).epsilon(0.03));
+    CHECK(points > 1.5 * mean(0, AreaIrradiance::points, 256));
+  }
+}
+
 // Goal: selective rendering does not guess what a coat mirrors or what its textures change. Method: corners of one
 // radiance on coats with and without.
 TEST_CASE("clear_coat_is_traced_where_it_is_not_smooth") {
