@@ -340,14 +340,16 @@ struct RadiancePart {
   }
 };
 
+// Effects of paths and lobes, for instances that look up the plan.
+constexpr EffectMask kHeldEffects = bit(Effect::specular) | bit(Effect::mirror) | bit(Effect::refraction) |
+                                    bit(Effect::absorption) | bit(Effect::alpha_blend) | bit(Effect::back_face_culling);
+
 // Among many lights, everything else costs little: few instances hold the code of all effects but those that need more
 // of a surface, and look up the plan.
 struct SelectingRadiancePart {
   using Function = RadianceFunction;
   static constexpr Effect kEffects[] = {Effect::metallic_roughness, Effect::mip_map, Effect::environment};
-  static constexpr EffectMask kRest = bit(Effect::source_selection) | bit(Effect::shadow) | bit(Effect::specular) |
-                                      bit(Effect::mirror) | bit(Effect::refraction) | bit(Effect::absorption) |
-                                      bit(Effect::alpha_blend) | bit(Effect::back_face_culling);
+  static constexpr EffectMask kRest = kHeldEffects | bit(Effect::source_selection) | bit(Effect::shadow);
   template <EffectMask mask>
   static constexpr Function instance() {
     return primary_radiance<RadiancePart::reduced(mask | kRest)>;
@@ -358,9 +360,7 @@ struct SelectingRadiancePart {
 struct CoatedRadiancePart {
   using Function = RadianceFunction;
   static constexpr Effect kEffects[] = {Effect::shadow, Effect::mip_map, Effect::environment, Effect::source_selection};
-  static constexpr EffectMask kRest = bit(Effect::clear_coat) | bit(Effect::specular) | bit(Effect::mirror) |
-                                      bit(Effect::refraction) | bit(Effect::absorption) | bit(Effect::alpha_blend) |
-                                      bit(Effect::back_face_culling) | bit(Effect::metallic_roughness);
+  static constexpr EffectMask kRest = kHeldEffects | bit(Effect::clear_coat) | bit(Effect::metallic_roughness);
   template <EffectMask mask>
   static constexpr Function instance() {
     return primary_radiance<RadiancePart::reduced(mask | kRest)>;
