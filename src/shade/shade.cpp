@@ -128,19 +128,21 @@ Vec3 dielectric(Tracer* tracer, const Ray& ray, const Surface& s, const Contact&
   return sum;
 }
 
-// What a coated surface mirrors and transmits: the base's reflected ray is the coat's, too, where they have one normal.
+// What a coated surface mirrors and transmits: the base's reflected ray is the coat's, too, where they have one normal,
+// so that coated glass has two branches, not three.
 template <EffectMask mask>
 Vec3 pass_coat(Tracer* tracer, const Ray& ray, const Surface& s, const Material& m, const Contact* contact,
                const Path<mask>& path, const Vec3& mirrored) {
   const SurfaceCoat& coat = s.coat;
   const Vec3 by_coat = {coat.mirror, coat.mirror, coat.mirror};
-  const bool together = is_zero(m.transmission) && coat.normal == s.normal;
+  const bool together = coat.normal == s.normal && (is_zero(m.transmission) || coat.passes > 0);
   Vec3 sum = {0, 0, 0};
   if (coat.mirror > 0 && !together) sum = mirror<mask>(tracer, RayKind::mirror, ray, s, coat.normal, path, by_coat);
   if (!is_zero(m.transmission)) {
     Path<mask> under = path;
     under.weight = path.weight * coat.passes;
-    return sum + dielectric<mask>(tracer, ray, s, *contact, under, mirrored) * coat.passes;
+    const Vec3 besides = together ? mirrored + by_coat * (1 / coat.passes) : mirrored;
+    return sum + dielectric<mask>(tracer, ray, s, *contact, under, besides) * coat.passes;
   }
   const Vec3 turned = together ? mirrored * coat.passes + by_coat : mirrored * coat.passes;
   if (!is_zero(turned)) sum += mirror<mask>(tracer, RayKind::mirror, ray, s, s.normal, path, turned);
