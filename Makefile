@@ -182,10 +182,18 @@ setup-bench-%:
 	@toolchains/setup.sh bench-$* >&2
 
 BENCH_SCENE := $(if $(filter command line environment,$(origin SCENE)),$(SCENE))
+ifeq ($(CLASS),)
 bench-embree: setup-bench-embree configure
 	@cmake --build $(BUILD) -j$(JOBS) --target bench_embree >&2
 	@$(BUILD)/bench_embree $(BENCH_SCENE:%=--scene %) $(JSON:%=--json %) \
 	  $(BUILD_JSON:%=--build-json %) $(BENCH_OPTIONS)
+else
+bench-embree: configure
+	@$(MAKE) --no-print-directory DEVICE= CROSS_PREFIX= all >&2
+	@toolchains/embree.sh $(CLASS) $(BUILD)-embree >&2 && cmake --build $(BUILD)-embree -j$(JOBS) --target embree_cost >&2
+	@tests/bench/device/embree_cost.py $(CLASS) $(BUILD)-embree/embree_cost $(BUILD)-embree/packages build/pocketray \
+	  $(JSON:%=--json %) $(BENCH_OPTIONS) $(BENCH_SCENE)
+endif
 
 bench-povray: setup-bench-povray configure
 	@cmake --build $(BUILD) -j$(JOBS) --target bench_povray >&2
@@ -255,7 +263,8 @@ help:
 	@echo "make motion-table measure motion to photon with a server, over links that lose packets"
 	@echo "make bench        measure cost per pixel and per effect of SCENE=$(SCENE), as JSON"
 	@echo "make bench-embree compare rays per second with Embree (SCENE=x: one scene, JSON=FILE, BUILD_JSON=FILE: write tables,"
-	@echo "                  BENCH_OPTIONS='--isa sse2 --rounds 31': see $(BUILD)/bench_embree --help)"
+	@echo "                  BENCH_OPTIONS='--isa sse2 --rounds 31': see $(BUILD)/bench_embree --help); with DEVICE=aarch64,"
+	@echo "                  instructions a ray"
 	@echo "make bench-povray compare whole frames with POV-Ray (JSON=FILE: write the table)"
 	@echo "make bench-device count instructions and estimated cycles per pixel for DEVICE=, by part (BENCH_OPTIONS=--effects: and"
 	@echo "                  by effect; JSON=FILE: write the table)"

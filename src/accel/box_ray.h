@@ -13,14 +13,15 @@
 namespace pocketray {
 inline namespace POCKETRAY_ISA {
 
-// Rows of BvhNode::bounds where a ray of these signs (bit 0: d.x < 0 …) enters and leaves boxes.
+// Offsets in bytes of the rows of BvhNode::bounds where a ray of these signs (bit 0: d.x < 0 …) enters and leaves boxes.
+// (Not every CPU scales an index when it loads four lanes.)
 struct SlabRows {
   std::size_t near[3], far[3];
 };
 constexpr SlabRows slab_rows(int signs) {
   SlabRows rows = {};
   for (int axis = 0; axis < 3; ++axis) {
-    std::size_t low = 4 * static_cast<std::size_t>(axis), high = low + 12;
+    std::size_t low = sizeof(float[4]) * static_cast<std::size_t>(axis), high = low + sizeof(float[3][4]);
     bool backward = signs >> axis & 1;
     rows.near[axis] = backward ? high : low, rows.far[axis] = backward ? low : high;
   }
@@ -62,10 +63,11 @@ inline float box_limit(int exponent, float t) {
 // The children without a hit up to `limit`; `enter` receives the distance at which each is entered, never negative.
 // A distance of −0 counts as negative: no hit lies there.
 inline Mask4 miss_boxes(const BoxRay& ray, const BvhNode& node, Float4 limit, Float4* enter) {
-  const float* bounds = node.bounds[0];
+  const char* bounds = reinterpret_cast<const char*>(node.bounds);
   const SlabRows& rows = *ray.rows;
   auto at = [&](const std::size_t* row, const Float4* offset, int axis) {
-    return product_less(Float4::load(bounds + row[axis]), ray.inverse[axis], offset[axis]);
+    const Float4 planes = Float4::load(reinterpret_cast<const float*>(bounds + row[axis]));
+    return product_less(planes, ray.inverse[axis], offset[axis]);
   };
   Float4 enter_x = at(rows.near, ray.near_offset, 0);
   Float4 enter_y = at(rows.near, ray.near_offset, 1);

@@ -1,5 +1,4 @@
 // bench_embree: the tracing core against Embree.
-#include <algorithm>
 #include <cstdio>
 
 #include "accel/accel_list.h"
@@ -7,6 +6,7 @@
 #include "bench/build_report.h"
 #include "bench/duel.h"
 #include "bench/duel_report.h"
+#include "bench/ray_sets.h"
 #include "session/interrupt.h"
 #include "session/report.h"
 
@@ -20,45 +20,6 @@ struct BenchOptions {
               build_json;
   int rounds = 15, build_rounds = 5;
 };
-
-bool asks(const std::vector<std::string>& list, const char* name) {
-  return std::find(list.begin(), list.end(), name) != list.end();
-}
-
-float lit_share(const OurSide& ours, const RaySet& shadow) {
-  OurTask task = make_our_task(ours, shadow);
-  trace_ours(&task);
-  std::vector<bool> occluded = occlusion_of(task);
-  std::size_t lit = static_cast<std::size_t>(std::count(occluded.begin(), occluded.end(), false));
-  return static_cast<float>(lit) / static_cast<float>(shadow.rays.empty() ? 1 : shadow.rays.size());
-}
-
-// The light is offset from the eye by a fraction of the scene's size; in a narrow room by less, until it reaches a
-// third.
-RaySet lit_shadow_rays(const BenchScene& scene, const OurSide& ours, const RaySet& primary,
-                       const std::vector<Hit>& hits) {
-  RaySet shadow;
-  for (float distance = 0.25f; distance > 0.01f; distance /= 2) {
-    shadow = make_shadow_rays(scene, primary, hits, distance);
-    if (lit_share(ours, shadow) > 1 / 3.0f) break;
-  }
-  return shadow;
-}
-
-// The requested ray sets of a picture size.
-Status make_sets(const BenchScene& scene, const std::string& size, const BenchOptions& options, const OurSide& ours,
-                 std::vector<RaySet>* sets) {
-  std::uint32_t width, height;
-  RETURN_IF_ERROR(parse_size(size, &width, &height));
-  RaySet primary;
-  RETURN_IF_ERROR(make_primary_rays(scene, width, height, &primary));
-  OurTask task = make_our_task(ours, primary);
-  trace_ours(&task);
-  if (asks(options.kinds, "shadow")) sets->push_back(lit_shadow_rays(scene, ours, primary, task.hits));
-  if (asks(options.kinds, "bounce")) sets->push_back(make_bounce_rays(scene, primary, task.hits));
-  if (asks(options.kinds, "primary")) sets->insert(sets->begin(), std::move(primary));
-  return success();
-}
 
 Status bench_scene(const std::string& name, const BenchOptions& options, std::vector<DuelRow>* rows,
                    std::vector<BuildRow>* builds) {
@@ -75,7 +36,7 @@ Status bench_scene(const std::string& name, const BenchOptions& options, std::ve
     EmbreeSide embree(scene, isa);
     for (const std::string& size : options.sizes) {
       std::vector<RaySet> sets;
-      RETURN_IF_ERROR(make_sets(scene, size, options, ours, &sets));
+      RETURN_IF_ERROR(make_ray_sets(scene, size, options.kinds, ours, &sets));
       for (const RaySet& set : sets) {
         if (interrupted) return success();
         std::vector<DuelRow> more = duel(scene, isa, ours, &embree, set, options.rounds);
