@@ -59,7 +59,7 @@ int run_command(int argument_count, char** arguments, const Team& team) {
   line.set_version_flag("--version", POCKETRAY_VERSION);
   line.require_subcommand(1);
   Command program = line.program();
-  program.footer("Exit status: 0 done, 1 bad input or environment, 2 wrong usage, 3 interrupted.");
+  program.footer("Exit status: 0 done, 1 bad input, value or environment, 2 wrong usage, 3 interrupted.");
   OptionalParts parts;
   parts.team = team;
 #ifdef POCKETRAY_HAVE_NETWORK

@@ -33,7 +33,11 @@ bool is_known_extension(const std::string& name) {
 }
 // Extensions without which a file is all there, though it looks otherwise.
 bool affects_looks_alone(const std::string& name) {
-  constexpr const char* kPrefixes[] = {"KHR_materials_", "EXT_lights_", "KHR_xmp"};
+  constexpr const char* kPrefixes[] = {
+      "KHR_materials_", "EXT_materials_",    "ADOBE_materials_", "EXT_lights_",   "KHR_environment_map",
+      "KHR_texture_",   "EXT_texture_",      "MSFT_texture_dds", "MSFT_packing_", "MSFT_lod",
+      "KHR_xmp",        "KHR_interactivity", "KHR_node_",
+  };
   return std::any_of(std::begin(kPrefixes), std::end(kPrefixes),
                      [&](const char* prefix) { return name.compare(0, std::strlen(prefix), prefix) == 0; });
 }
@@ -143,6 +147,31 @@ void list_images(GltfFile* file, const Json& root) {
   }
 }
 
+// Removes the uses of textures without an image: an extension that is not read has it, in another format.
+void drop_textures(const std::vector<bool>& has_image, Json* value, bool* dropped) {
+  for (auto item = value->begin(); item != value->end();) {
+    const Json* index = member(*item, "index");
+    const bool is_texture =
+        value->is_object() && index && index->is_number_unsigned() && item.key().find("Texture") != std::string::npos;
+    if (is_texture && index->get<std::uint64_t>() < has_image.size() && !has_image[index->get<std::size_t>()]) {
+      item = value->erase(item), *dropped = true;
+    } else {
+      if (item->is_structured()) drop_textures(has_image, &*item, dropped);
+      ++item;
+    }
+  }
+}
+void drop_textures_without_image(GltfFile* file, Json* root) {
+  const Json* textures = member(*root, "textures");
+  auto materials = root->find("materials");
+  if (!textures || !textures->is_array() || materials == root->end() || !materials->is_structured()) return;
+  std::vector<bool> has_image;
+  for (const Json& texture : *textures) has_image.push_back(member(texture, "source") != nullptr);
+  bool dropped = false;
+  drop_textures(has_image, &*materials, &dropped);
+  if (dropped) note_unused(file->builder, "textures in other formats than PNG and JPEG");
+}
+
 }  // namespace
 
 const std::uint8_t* gltf_view(const GltfFile& file, int view_index, std::size_t* byte_count) {
@@ -171,6 +200,7 @@ void gltf_parse(GltfFile* file, Bytes bytes) {
   check_version_and_extensions(file, root);
   fetch_buffers(file, root);
   list_images(file, root);
+  drop_textures_without_image(file, &root);
 
   std::vector<tinygltf::Buffer> buffers;
   std::vector<tinygltf::Image> images;

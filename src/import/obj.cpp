@@ -2,9 +2,11 @@
 
 #include <tiny_obj_loader.h>
 
+#include <algorithm>
 #include <istream>
 #include <sstream>
 #include <streambuf>
+#include <string_view>
 
 #include "base/color.h"
 #include "import/import_error.h"
@@ -23,19 +25,39 @@ struct MemoryBuffer : std::streambuf {
   }
 };
 
+// What follows "mtllib", where spaces divide it.
+std::vector<std::string> names_with_spaces(const Bytes& text) {
+  constexpr char kWord[] = "mtllib ";
+  constexpr char kBlank[] = " \t\r";
+  std::vector<std::string> names;
+  const std::string_view all(reinterpret_cast<const char*>(text.data()), text.size());
+  for (std::size_t at = all.find(kWord); at != all.npos && names.size() < 64; at = all.find(kWord, at + 1)) {
+    if (at > 0 && all[at - 1] != '\n') continue;
+    std::string_view name = all.substr(at + sizeof kWord - 1);
+    name = name.substr(0, name.find('\n'));
+    name.remove_prefix(std::min(name.find_first_not_of(kBlank), name.size()));
+    name = name.substr(0, name.find_last_not_of(kBlank) + 1);
+    if (name.find(' ') != name.npos && name.size() < 4096) names.emplace_back(name);
+  }
+  return names;
+}
+
 // Reads .mtl files beside the scene file; a missing one is a remark.
 class MaterialFiles : public tinyobj::MaterialReader {
  public:
-  MaterialFiles(const std::string& scene_path, SceneBuilder* builder) : scene_path_(scene_path), builder_(builder) {}
+  MaterialFiles(const std::string& scene_path, const Bytes& text, SceneBuilder* builder)
+      : scene_path_(scene_path), builder_(builder), spaced_names_(names_with_spaces(text)) {}
   bool operator()(const std::string& name, std::vector<tinyobj::material_t>* materials,
                   std::map<std::string, int>* by_name, std::string* warning, std::string* error) override {
     Bytes bytes;
-    try {
-      bytes = read_beside(scene_path_, name, builder_->options.byte_count_max / 16, &builder_->files);
-      tidy_obj_text(&bytes);
-    } catch (const ImportError& failure) {
-      note_remark(builder_, std::string("materials are missing: ") + failure.what());
-      return false;
+    if (!read_spaced(name, &bytes)) {
+      try {
+        bytes = read_beside(scene_path_, name, builder_->options.byte_count_max / 16, &builder_->files);
+        tidy_obj_text(&bytes);
+      } catch (const ImportError& failure) {
+        note_remark(builder_, std::string("materials are missing: ") + failure.what());
+        return false;
+      }
     }
     check_mtl_numbers(bytes, name);
     MemoryBuffer buffer(bytes);
@@ -45,8 +67,21 @@ class MaterialFiles : public tinyobj::MaterialReader {
   }
 
  private:
+  // The library divides a name at its spaces, and asks for the parts: the file named by the whole line comes first.
+  bool read_spaced(const std::string& part, Bytes* bytes) {
+    for (const std::string& whole : spaced_names_)
+      if (whole.compare(0, part.size() + 1, part + ' ') == 0) try {
+          *bytes = read_beside(scene_path_, whole, builder_->options.byte_count_max / 16, &builder_->files);
+          tidy_obj_text(bytes);
+          return true;
+        } catch (const ImportError&) {
+        }
+    return false;
+  }
+
   std::string scene_path_;
   SceneBuilder* builder_;
+  std::vector<std::string> spaced_names_;
 };
 
 std::uint16_t linear_16(float srgb) {
@@ -160,7 +195,7 @@ void import_obj(const std::string& path, Bytes bytes, SceneBuilder* builder) {
   std::string warning, error;
   MemoryBuffer buffer(bytes);
   std::istream stream(&buffer);
-  MaterialFiles material_files(path, builder);
+  MaterialFiles material_files(path, bytes, builder);
   if (!tinyobj::LoadObj(&attributes, &shapes, &materials, &warning, &error, &stream, &material_files, true, false))
     fail_import("%.300s (as tinyobjloader reports); export the file again",
                 error.empty() ? warning.c_str() : error.c_str());

@@ -6,6 +6,9 @@
 namespace pocketray {
 namespace {
 
+constexpr Vec3 kVertical = {0, 1, 0};
+constexpr float kLeanMax = 0.05f;  // cosine; a camera that leans more has another vertical
+
 // Rotates v about a unit axis by an angle in radians (Rodrigues' formula).
 Vec3 rotate(const Vec3& v, const Vec3& axis, double angle) {
   float c = static_cast<float>(det_cos(angle)), s = static_cast<float>(det_sin(angle));
@@ -76,6 +79,17 @@ bool move_camera(CameraControl* control, const CameraInput& in, float seconds) {
 Camera orbited_camera(const CameraControl& control, float degrees) {
   CameraControl turned = control;
   reset_camera(&turned);
+  // A camera that looks up or down may lean: the scene turns about the vertical all the same.
+  Camera& camera = turned.camera;
+  const Vec3 up = normalize(camera.up);
+  if (up.y > kLeanMax && up.y < 1) {
+    const double angle = radians(static_cast<double>(degrees));
+    camera.eye = camera.target - rotate(camera.target - camera.eye, kVertical, angle);
+    camera.up = rotate(up, kVertical, angle);
+    camera.node = kNone;
+    if (!is_within_limits(camera)) camera = control.home;
+    return camera;
+  }
   turned.mode = CameraMode::orbit;
   CameraInput right;
   right.right = 1;

@@ -26,7 +26,8 @@ CameraControl make_camera_control(const Camera& camera, const Box& bounds);
 // Moves for `seconds`; true if anything changed. Orbit: around the target, 90° a second, the pole kept on top. Fly:
 // turns on the spot, moves half the scene's size a second.
 bool move_camera(CameraControl* control, const CameraInput& input, float seconds);
-// The scene's own view, orbited around its target by `degrees`; not attached to any moving node.
+// The scene's own view, orbited around its target by `degrees`, about the vertical or, where that lies across the view,
+// about its up vector; not attached to any moving node.
 Camera orbited_camera(const CameraControl& control, float degrees);
 // Restores the scene's own view.
 void reset_camera(CameraControl* control);

@@ -133,7 +133,7 @@ void print_notes(const OpenScene& opened) {
   else if (info.default_lights != 0)
     std::fprintf(stderr, "pocketray: the scene has no light: %s\n", added);
   if (info.default_lights == 0 && light != LightChoice::key)
-    std::fprintf(stderr, "pocketray: --light changes nothing: the scene has light of its own\n");
+    std::fprintf(stderr, "pocketray: --light changes nothing: the scene or its environment has light\n");
   const Renderer& renderer = opened.renderer;
   if (renderer.settings.coherence == CoherenceMode::on && !renderer.coherence_state.planned)
     std::fprintf(stderr, "pocketray: --coherence on has no effect: %s\n", renderer.coherence_state.unplanned_because);

@@ -326,6 +326,29 @@ TEST_CASE("gltf_required_looks_are_a_warning") {
   CHECK(imported.warning.find("KHR_materials_sheen") != std::string::npos);
 }
 
+// Goal: a texture whose image only an extension knows is left out and named, wherever a material uses it. Method: such
+// a texture as colour, normals and a coat's strength, beside one with an image.
+TEST_CASE("gltf_textures_in_unknown_formats_are_left_out") {
+  const std::string textures = images(kColors, "{\"extensions\":{\"EXT_texture_webp\":{\"source\":0}}},{\"source\":0}");
+  const std::string extensions =
+      ",\"extensionsUsed\":[\"EXT_texture_webp\",\"KHR_materials_clearcoat\"],\"extensionsRequired\":[\"EXT_texture_"
+      "webp\"]";
+  auto material = [&](int texture) {
+    const std::string use = "{\"index\":" + std::to_string(texture) + "}";
+    return load_text(triangle_gltf("{\"pbrMetallicRoughness\":{\"baseColorTexture\":" + use + "},\"normalTexture\":" +
+                                       use + ",\"extensions\":{\"KHR_materials_clearcoat\":{\"clearcoatFactor\":0.5," +
+                                       "\"clearcoatTexture\":" + use + "}}}",
+                                   extensions + textures));
+  };
+  const ImportedScene without = material(0), with = material(1);
+  CHECK(without.warning.find("textures in other formats than PNG and JPEG") != std::string::npos);
+  CHECK(without.scene.textures.count == 0);
+  REQUIRE(without.scene.clear_coats.count > 0);
+  CHECK(without.scene.clear_coats[0].strength == 0.5f);
+  CHECK(with.warning.find("other formats") == std::string::npos);
+  CHECK(with.scene.textures.count > 0);
+}
+
 // Goal: textures are halved until they fit. Method: the sample helmet at a side of at most 64.
 TEST_CASE("gltf_large_textures_are_halved_until_they_fit") {
   std::string path = shared_scene("gltf/DamagedHelmet.glb");

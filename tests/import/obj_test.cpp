@@ -235,3 +235,22 @@ TEST_CASE("obj_files_are_found_in_any_case") {
   REQUIRE(std::remove((folder.path + "/M.MTL").c_str()) == 0);
   CHECK(contains(load(obj).warning, "m.mtl"));
 }
+
+// Goal: spaces in the name of a material file need no escapes, as other programs write it. Method: one file or several
+// in a line, with and without the file that the whole line names.
+TEST_CASE("obj_material_files_may_have_spaces_in_their_names") {
+  TemporaryFolder folder;
+  const std::string rest = std::string(kQuad) + "usemtl m\nf 1 2 3 4\n";
+  auto green = [&](const std::string& line) {
+    ImportedScene imported = load(folder.write("a.obj", line + rest));
+    CHECK(imported.warning.empty());
+    return imported.scene.materials[0].diffuse.y;
+  };
+  folder.write("no", "newmtl m\nKd 0 0.25 0\n");
+  CHECK(green("mtllib no such.mtl\n") == doctest::Approx(0.25));
+  folder.write("no such.mtl", "newmtl m\nKd 0 0.5 0\n");
+  CHECK(green("mtllib no such.mtl\n") == doctest::Approx(0.5));
+  CHECK(green("mtllib   no such.mtl  \r\n") == doctest::Approx(0.5));
+  CHECK(green("mtllib no\\ such.mtl\n") == doctest::Approx(0.5));
+  CHECK(green("mtllib no\n") == doctest::Approx(0.25));
+}
