@@ -139,7 +139,16 @@ Status check_raw(const RenderOptions& o, const RenderRequest& request) {
   return option ? failure("%s is for .raw pictures: drop it, or write .raw", option) : success();
 }
 
+// Whether frames build on the last one.
+bool interleaves(const RenderOptions& o) {
+  SettingOptions settings = o.common.settings;
+  return settings["resolution"].choice == kResolutionNames[static_cast<int>(Resolution::interleaved)];
+}
+
 Status check_resume(const RenderOptions& o, const RenderRequest& request) {
+  if (o.resume && interleaves(o))
+    return failure(
+        "--resume renders frames alone, those of --resolution interleaved build on the last one: drop either");
   if (keeps_journal(o, request))
     return check_outputs(inputs_of(o), {{"-o", journal_path(o.output)}, {"--json", o.common.json}});
   if (!o.resume) return success();
@@ -159,6 +168,9 @@ Status check_team(const RenderOptions& o, const RenderRequest& request) {
     return failure("one picture is rendered by one program: add --frames 0:99, or start it without mpirun");
   if (!o.servers.addresses.empty() || o.budget.ms > 0)
     return failure("ranks share frames by themselves: drop --server and --budget-ms, or start without mpirun");
+  if (interleaves(o))
+    return failure(
+        "ranks render frames alone, those of --resolution interleaved build on the last one: start without mpirun");
   return success();
 }
 

@@ -14,7 +14,7 @@ inline constexpr const char* kTextureFilterNames[] = {"scene", "nearest", "bilin
 inline constexpr const char* kAreaShadowsNames[] = {"adaptive", "every"};
 inline constexpr const char* kAreaIrradianceNames[] = {"points", "analytic"};
 inline constexpr const char* kNormalNames[] = {"scene", "flat"};
-inline constexpr const char* kResolutionNames[] = {"full", "checkerboard", "half"};
+inline constexpr const char* kResolutionNames[] = {"full", "checkerboard", "half", "interleaved"};
 inline constexpr const char* kReconstructionNames[] = {"constant", "bilinear", "bicubic"};
 
 // "auto", "none", then the effects that are methods of indirect light.
@@ -201,7 +201,7 @@ inline constexpr SettingRow kSettingList[] = {
      ""},
     {"resolution",
      "pixels to trace",
-     "the others are reconstructed along edges",
+     "the others are reconstructed along edges; interleaved: a checkerboard whose other half comes from the last frame",
      "resolution",
      choice_field<&Quality::resolution>(kResolutionNames),
      1,
@@ -209,7 +209,8 @@ inline constexpr SettingRow kSettingList[] = {
      kAlways,
      false,
      double(Resolution::full),
-     {double(Resolution::half), double(Resolution::checkerboard), double(Resolution::full)},
+     {double(Resolution::half), double(Resolution::checkerboard), double(Resolution::interleaved),
+      double(Resolution::full)},
      nullptr,
      ""},
     {"light-tolerance",

@@ -25,8 +25,8 @@ enum class AreaShadows : std::uint8_t { adaptive, every };
 // Light from flat lamps: the sum over their points, or in closed form.
 enum class AreaIrradiance : std::uint8_t { points, analytic };
 
-// The pixels that are traced: all, half of them, or a quarter; see shade/lattice.h.
-enum class Resolution : std::uint8_t { full, checkerboard, half };
+// The pixels that are traced: all, half of them, a quarter, or each half in turn; see shade/lattice.h.
+enum class Resolution : std::uint8_t { full, checkerboard, half, interleaved };
 
 // The settings that trade accuracy for time, a row of setting_list.h each. They may change from frame to frame.
 struct Quality {
