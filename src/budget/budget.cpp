@@ -74,6 +74,8 @@ Status plan_front(Renderer* renderer, const SceneStorage& storage, const OutputN
       const Resolution resolution = f->front.candidates[i].resolution;
       if (resolution == Resolution::interleaved || renderer->settings.resolution == Resolution::full)
         renderer->settings.resolution = resolution;
+      if (f->front.candidates[i].moving_contrast == MovingContrast::as_seen)
+        renderer->settings.moving_contrast = MovingContrast::as_seen;
       if (f->front.candidates[i].environment_shadows > 0)
         renderer->settings.environment_shadows = f->front.candidates[i].environment_shadows;
       if (f->front.candidates[i].light_tolerance > 0)

@@ -13,6 +13,7 @@ namespace {
 FrameSignature signature_now(const Renderer& renderer) {
   FrameSignature s = signature_of(renderer.frame);
   s.quality.resolution = Resolution::full, s.quality.selective_contrast = 0;
+  s.quality.moving_contrast = MovingContrast::as_resting;
   s.mask &= ~(bit(Effect::undersampling) | bit(Effect::selective));
   return s;
 }
@@ -34,13 +35,18 @@ SceneNow scene_now(const Renderer& renderer) {
 }  // namespace
 
 void make_last_picture(Renderer* renderer) {
-  if (!plans_last_picture(renderer->settings)) return;
+  const Settings& settings = renderer->settings;
   LastPictureState* state = &renderer->last_picture;
-  state->pixels = arena_array<Vec3>(&renderer->persistent_arena, renderer->image.count);
-  state->steps = arena_array<Vec2>(&renderer->persistent_arena,
-                                   renderer->settings.threads * window_pixel_count(renderer->settings));
+  state->is_planned = plans_last_picture(settings);
+  if (!state->is_planned) return;
+  if (plans_last_pixels(settings)) {
+    state->pixels = arena_array<Vec3>(&renderer->persistent_arena, renderer->image.count);
+    state->steps = arena_array<Vec2>(&renderer->persistent_arena, settings.threads * window_pixel_count(settings));
+  }
   if (const std::uint32_t count = kept_position_count(renderer->scene, renderer->effects.mask))
     state->positions = arena_array<Vec3>(&renderer->persistent_arena, count);
+  set_motion_tolerance(static_cast<double>(settings.pixels_per_degree),
+                       static_cast<double>(renderer->scene.info.frames_per_second), &state->tolerance);
 }
 
 void forget_picture(Renderer* renderer) { renderer->last_picture.is_known = false; }
@@ -48,30 +54,38 @@ void forget_picture(Renderer* renderer) { renderer->last_picture.is_known = fals
 void follow_picture(Renderer* renderer) {
   LastPictureState* state = &renderer->last_picture;
   FrameData* frame = &renderer->frame;
-  if (state->pixels.empty()) return;
+  if (!state->is_planned) return;
   state->signature_now = signature_now(*renderer);
   state->scene_now = scene_now(*renderer);
-  if (!has(renderer->effects.mask, Effect::undersampling) || frame->settings.resolution != Resolution::interleaved)
-    return;
+  const Settings& settings = renderer->settings;
+  const bool interleaves =
+      has(renderer->effects.mask, Effect::undersampling) && settings.resolution == Resolution::interleaved;
+  const bool sees_motion = settings.moving_contrast == MovingContrast::as_seen;
+  if (!interleaves && !sees_motion) return;
   LastPicture* last = &state->last;
   *last = LastPicture();
   last->camera = state->signature.camera;
+  last->tolerance = &state->tolerance;
   FrameSignature moved = state->signature;
   moved.camera = state->signature_now.camera;
+  bool is_still = false;
   if (state->is_known && !difference(moved, state->signature_now)) {
     last->is_known = true;
-    last->pixels = state->pixels;
     last->positions = state->positions.count ? Array<const Vec3>(state->positions) : frame->positions;
-    last->parity = 1 - state->parity;
-    last->rests = !difference(state->signature, state->signature_now) && same_scene(state->scene, state->scene_now) &&
-                  state->exposure == renderer->exposure &&
-                  (state->contrast == 0 || state->contrast == frame->settings.selective_contrast);
+    is_still = !difference(state->signature, state->signature_now) && same_scene(state->scene, state->scene_now);
   }
+  if (interleaves && last->is_known && state->is_whole) {
+    last->pixels = state->pixels;
+    last->parity = 1 - state->parity;
+    last->rests = is_still && state->exposure == renderer->exposure &&
+                  (state->contrast == 0 || (state->is_still && state->contrast == settings.selective_contrast));
+  }
+  state->is_still_now = is_still || !last->is_known || !sees_motion;
   frame->last = last;
   // The hits of interpolated pixels are not known.
-  if (!last->is_known || frame->trace_lattice_strip) return;
+  if (last->pixels.empty() || frame->trace_lattice_strip) return;
   frame->first_hits = &state->unused;
-  const std::uint32_t pixels = window_pixel_count(renderer->settings);
+  const std::uint32_t pixels = window_pixel_count(settings);
   for (std::uint32_t i = 0; i < renderer->tracers.count; ++i)
     renderer->tracers[i].window.steps = {&state->steps[i * pixels], pixels};
 }
@@ -79,19 +93,24 @@ void follow_picture(Renderer* renderer) {
 void keep_picture(Renderer* renderer) {
   LastPictureState* state = &renderer->last_picture;
   const FrameData& frame = renderer->frame;
-  if (state->pixels.empty()) return;
+  if (!state->is_planned) return;
   const bool all = !has(renderer->effects.mask, Effect::undersampling);
-  state->is_known = all || frame.last != nullptr;
-  if (!state->is_known) return;
-  CHECK_EQ(state->pixels.count, renderer->image.count);
-  std::copy(renderer->image.begin(), renderer->image.end(), state->pixels.begin());
+  const bool interleaves = frame.last && frame.settings.resolution == Resolution::interleaved;
+  state->is_known = true;
+  state->is_whole = state->pixels.count > 0 && (all || interleaves);
+  if (state->is_whole) {
+    CHECK_EQ(state->pixels.count, renderer->image.count);
+    std::copy(renderer->image.begin(), renderer->image.end(), state->pixels.begin());
+  }
   if (state->positions.count)
     std::copy(frame.positions.data, frame.positions.data + frame.positions.count, state->positions.data);
   state->signature = state->signature_now;
   state->scene = state->scene_now;
   state->exposure = renderer->exposure;
   state->contrast = has(renderer->effects.mask, Effect::selective) ? frame.settings.selective_contrast : 0;
-  state->parity = frame.last ? frame.last->parity : 0;
+  state->parity = interleaves ? frame.last->parity : 0;
+  state->is_still = !frame.last || state->is_still_now;
+  if (frame.first_hits == &state->unused) renderer->frame.first_hits = nullptr;
 }
 
 }  // namespace pocketray

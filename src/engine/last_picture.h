@@ -1,8 +1,9 @@
-// The last picture of a sequence, for Resolution::interleaved, whose pictures build on each other.
+// The last picture of a sequence, for Resolution::interleaved, whose pictures build on each other, and for
+// MovingContrast::as_seen, which asks how fast things move.
 //
 // Only whole pictures follow each other. Rows shared with servers, a server's own rows and parts of a picture are a
-// plain checkerboard: nobody else has the last picture. The pictures depend on their sequence, not on threads, spans or
-// CPUs.
+// plain checkerboard, of contrasts as in what rests: nobody else has the last picture. The pictures depend on their
+// sequence, not on threads, spans or CPUs.
 #pragma once
 #include "engine/renderer.h"
 

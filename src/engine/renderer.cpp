@@ -261,6 +261,8 @@ Status change_settings(Renderer* renderer, const Settings& settings) {
   if (has(effects.mask, Effect::undersampling) && settings.resolution == Resolution::interleaved &&
       renderer->last_picture.pixels.empty())
     return failure("memory is planned without the last picture: plan with --resolution interleaved");
+  if (settings.moving_contrast == MovingContrast::as_seen && !renderer->last_picture.is_planned)
+    return failure("memory is planned without what moved: plan with --moving-contrast as-seen");
   std::size_t memory_bytes = now.memory_bytes;
   renderer->settings = settings;
   renderer->settings.memory_bytes = memory_bytes;

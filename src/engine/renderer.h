@@ -5,6 +5,7 @@
 #include "plan/plan_memory.h"
 #include "scene/animate.h"
 #include "scene/content_hash.h"
+#include "shade/motion_contrast.h"
 #include "shade/trace_spans.h"
 #include "temporal/coherence.h"
 
@@ -43,14 +44,17 @@ struct SceneNow {
 
 // The last whole picture, and what it depended on; last_picture.h.
 struct LastPictureState {
-  Array<Vec3> pixels;     // empty: not planned
-  Array<Vec3> positions;  // of a scene that moves
-  Array<Vec2> steps;      // window_pixel_count() of them per thread
-  bool is_known = false;
+  bool is_planned = false;
+  Array<Vec3> pixels;                       // empty: not planned
+  Array<Vec3> positions;                    // of a scene that moves
+  Array<Vec2> steps;                        // window_pixel_count() of them per thread
+  bool is_known = false, is_whole = false;  // all pixels were traced, or one half of a checkerboard after the other
   FrameSignature signature, signature_now;
   SceneNow scene, scene_now;
   float exposure = 1, contrast = 0;
   std::uint32_t parity = 0;
+  bool is_still = true, is_still_now = true;  // it was traced as what rests
+  MotionTolerance tolerance;
   LastPicture last;  // of FrameData
   Hit unused = {};   // for FrameData::first_hits, where steps are kept instead
 };

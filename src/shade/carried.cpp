@@ -65,9 +65,11 @@ bool sample(const LastPicture& last, const CameraRays& camera, float x, float y,
 std::size_t last_picture_need(const Scene& scene, EffectMask mask, const Settings& settings) {
   if (!plans_last_picture(settings)) return 0;
   const std::uint32_t positions = kept_position_count(scene, mask);
-  return arena_need<Vec3>(std::size_t(settings.width) * settings.height) +
-         arena_need<Vec2>(std::size_t(settings.threads) * window_pixel_count(settings)) +
-         (positions ? arena_need<Vec3>(positions) : 0);
+  std::size_t bytes = positions ? arena_need<Vec3>(positions) : 0;
+  if (plans_last_pixels(settings))
+    bytes += arena_need<Vec3>(std::size_t(settings.width) * settings.height) +
+             arena_need<Vec2>(std::size_t(settings.threads) * window_pixel_count(settings));
+  return bytes;
 }
 
 bool place_in_picture(const CameraRays& c, const Vec3& point, Vec2* place) {

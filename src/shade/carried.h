@@ -8,9 +8,13 @@
 
 namespace pocketray {
 
-// Its memory: planned for with the setting, even if the effect is off at first.
-constexpr bool plans_last_picture(const Settings& settings) {
+// Its memory: planned for with the settings, even if their effects are off at first. Pixels are kept to be carried
+// over; where vertices were, to tell how fast surfaces move, too.
+constexpr bool plans_last_pixels(const Settings& settings) {
   return settings.resolution == Resolution::interleaved && plans_lattice(settings);
+}
+constexpr bool plans_last_picture(const Settings& settings) {
+  return plans_last_pixels(settings) || settings.moving_contrast == MovingContrast::as_seen;
 }
 inline std::uint32_t kept_position_count(const Scene& scene, EffectMask mask) {
   return has(mask, Effect::animation) && is_animated(scene) ? scene.positions.count : 0;

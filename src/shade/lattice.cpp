@@ -34,7 +34,7 @@ struct Window {
   // The last picture, if pixels are carried over from it.
   const LastPicture* carries() const {
     const LastPicture* last = tracer->frame->last;
-    return last && last->is_known ? last : nullptr;
+    return last && last->pixels.count ? last : nullptr;
   }
 };
 

@@ -42,7 +42,7 @@ std::string hash_of(const SceneSource& source, const Scene& scene) {
 // The settings with the largest memory need of all that a sweep tries.
 Settings dearest(const Scene& scene, Settings settings) {
   settings.indirect = indirect_choice(Effect::instant_radiosity);
-  settings.resolution = Resolution::interleaved;
+  settings.resolution = Resolution::interleaved, settings.moving_contrast = MovingContrast::as_seen;
   std::uint32_t own = settings.points_per_area_light;
   for (std::uint32_t points = kPointsPerAreaLightMax; points > own; --points) {
     settings.points_per_area_light = points;
@@ -121,7 +121,9 @@ Status render_in_double(Rig* rig, double seconds) {
 
 // Whether the frame builds on the one before it.
 bool interleaves(const Configuration& configuration) {
-  return configuration.settings.resolution == Resolution::interleaved && !configuration.double_precision;
+  const Settings& s = configuration.settings;
+  return (s.resolution == Resolution::interleaved || s.moving_contrast == MovingContrast::as_seen) &&
+         !configuration.double_precision;
 }
 
 // Of a frame that builds on the one before, the latter: a frame's time earlier, by a camera a degree aside, which turns

@@ -137,6 +137,7 @@ bool can_refine(const Viewer& viewer, const Renderer& renderer, const ViewerLoop
 // Begins the exact picture: half of it, if the other half is in the last one, or all.
 Status begin_exact(Renderer* renderer, double seconds) {
   Quality exact = renderer->settings;
+  exact.moving_contrast = MovingContrast::as_resting;
   if (exact.resolution == Resolution::interleaved) {
     exact.selective_contrast = 0;
     RETURN_IF_ERROR(set_quality(renderer, exact));

@@ -198,4 +198,7 @@ TEST_CASE("carried_memory_is_planned_with_the_setting") {
         least + arena_need<Vec3>(moving->scene.positions.count));
   settings.forced_off = bit(Effect::undersampling);
   CHECK(last_picture_need(moving->scene, kAllEffects, settings) == 0);
+  settings.moving_contrast = MovingContrast::as_seen;
+  CHECK(last_picture_need(moving->scene, kAllEffects, settings) == arena_need<Vec3>(moving->scene.positions.count));
+  CHECK(last_picture_need(still->scene, kAllEffects, settings) == 0);
 }
