@@ -75,6 +75,13 @@ TEST_CASE("interleaved_frames_complete_what_rests") {
       next_picture(&test->renderer, 0.5);
       CHECK(!same_picture(next_picture(&test->renderer, 0.4), exact));
       CHECK(same_picture(next_picture(&test->renderer, 0.4), exact));
+      Camera camera = test->renderer.camera;
+      camera.node = kNone;
+      REQUIRE(set_camera(&test->renderer, camera).ok);
+      next_picture(&test->renderer, 0.4);
+      CHECK(test->renderer.frame.last->rests);
+      next_picture(&test->renderer, 0.5);  // before the same camera, things have moved
+      CHECK_FALSE(test->renderer.frame.last->rests);
     }
 }
 
