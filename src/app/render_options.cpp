@@ -139,7 +139,19 @@ Status check_raw(const RenderOptions& o, const RenderRequest& request) {
   return option ? failure("%s is for .raw pictures: drop it, or write .raw", option) : success();
 }
 
+// Whether frames build on the last one.
+bool builds_on_last(const RenderOptions& o) {
+  SettingOptions settings = o.common.settings;
+  auto is = [&](const char* setting, const char* choice) { return settings[setting].choice == choice; };
+  return is("resolution", kResolutionNames[static_cast<int>(Resolution::interleaved)]) ||
+         is("moving-contrast", kMovingContrastNames[static_cast<int>(MovingContrast::as_seen)]);
+}
+
 Status check_resume(const RenderOptions& o, const RenderRequest& request) {
+  if (o.resume && builds_on_last(o))
+    return failure(
+        "--resume renders frames alone, and those of --resolution interleaved and --moving-contrast as-seen build on "
+        "the last one: drop it, or these");
   if (keeps_journal(o, request))
     return check_outputs(inputs_of(o), {{"-o", journal_path(o.output)}, {"--json", o.common.json}});
   if (!o.resume) return success();
@@ -159,6 +171,10 @@ Status check_team(const RenderOptions& o, const RenderRequest& request) {
     return failure("one picture is rendered by one program: add --frames 0:99, or start it without mpirun");
   if (!o.servers.addresses.empty() || o.budget.ms > 0)
     return failure("ranks share frames by themselves: drop --server and --budget-ms, or start without mpirun");
+  if (builds_on_last(o))
+    return failure(
+        "ranks render frames alone, and those of --resolution interleaved and --moving-contrast as-seen build on the "
+        "last one: start without mpirun, or drop these");
   return success();
 }
 
@@ -178,7 +194,7 @@ Status check_frame_rate(const RenderOptions& o, const RenderRequest& request) {
 
 bool keeps_journal(const RenderOptions& o, const RenderRequest& request) {
   return request.sequence.given && request.animation == AnimationKind::none && o.servers.addresses.empty() &&
-         o.budget.ms == 0;
+         o.budget.ms == 0 && !builds_on_last(o);
 }
 
 std::string identity_of(const RenderOptions& o, const RenderRequest& request, const SceneSource& source,
@@ -275,6 +291,7 @@ void add_render_options(Command command, RenderOptions* o) {
   add_budget_options(command, &o->budget);
   add_look_options(command, &o->common, "--budget-ms");
   add_coherence_options(command, &o->common);
+  add_vision_option(command, &o->common);
   command
       .add_option(
           "-o,--output", o->output,

@@ -68,7 +68,7 @@ struct SettingRow {
   const char* note;      // added to the option's help after `what` and the range; may be empty
   const char* hud_name;  // as the overlay shows it; null: not shown
   SettingField field;
-  std::uint32_t wire_bytes;       // in the settings of a request, in list order
+  std::uint32_t wire_bytes;       // in the settings of a request, in list order; 0: shared frames do without
   EffectMask effects;             // effects that it belongs to; a sweep looks for them
   EffectMask seen_with;           // if none of these is on, it changes no picture
   bool places_lights;             // light points or the radiance bound depend on it

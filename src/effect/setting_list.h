@@ -14,7 +14,8 @@ inline constexpr const char* kTextureFilterNames[] = {"scene", "nearest", "bilin
 inline constexpr const char* kAreaShadowsNames[] = {"adaptive", "every"};
 inline constexpr const char* kAreaIrradianceNames[] = {"points", "analytic"};
 inline constexpr const char* kNormalNames[] = {"scene", "flat"};
-inline constexpr const char* kResolutionNames[] = {"full", "checkerboard", "half"};
+inline constexpr const char* kResolutionNames[] = {"full", "checkerboard", "half", "interleaved"};
+inline constexpr const char* kMovingContrastNames[] = {"as-resting", "as-seen"};
 inline constexpr const char* kReconstructionNames[] = {"constant", "bilinear", "bicubic"};
 
 // "auto", "none", then the effects that are methods of indirect light.
@@ -199,9 +200,22 @@ inline constexpr SettingRow kSettingList[] = {
      {0.5, 0.375, 0.25, 0.1875, 0.125, 0.0625, 0},
      nullptr,
      ""},
+    {"moving-contrast",
+     "contrasts that selective rendering sees in what moves across the screen",
+     "as-seen: less of them, the faster it moves, at 30 frames per second or the scene's",
+     nullptr,
+     choice_field<&Quality::moving_contrast>(kMovingContrastNames),
+     0,
+     bit(Effect::selective),
+     kAlways,
+     false,
+     double(MovingContrast::as_resting),
+     {double(MovingContrast::as_seen), double(MovingContrast::as_resting)},
+     nullptr,
+     ""},
     {"resolution",
      "pixels to trace",
-     "the others are reconstructed along edges",
+     "the others are reconstructed along edges; interleaved: a checkerboard whose other half comes from the last frame",
      "resolution",
      choice_field<&Quality::resolution>(kResolutionNames),
      1,
@@ -209,7 +223,8 @@ inline constexpr SettingRow kSettingList[] = {
      kAlways,
      false,
      double(Resolution::full),
-     {double(Resolution::half), double(Resolution::checkerboard), double(Resolution::full)},
+     {double(Resolution::half), double(Resolution::checkerboard), double(Resolution::interleaved),
+      double(Resolution::full)},
      nullptr,
      ""},
     {"light-tolerance",
@@ -277,7 +292,7 @@ constexpr bool setting_rows_valid() {
         return false;
     }
     if (field.kind == SettingKind::real && row.wire_bytes != 4) return false;
-    if (field.kind == SettingKind::choice && (row.wire_bytes != 1 || row.sweep.count != field.name_count)) return false;
+    if (field.kind == SettingKind::choice && (row.wire_bytes > 1 || row.sweep.count != field.name_count)) return false;
     if (row.sweep.count < 2) return false;
     for (int i = 0; i < row.sweep.count; ++i) {
       bool is_choice = field.kind == SettingKind::choice;

@@ -16,6 +16,9 @@ constexpr char kFirstWord[] = "pocketray-front";
 // Settings come first, in the order of their list.
 enum Key : int { flip = kSettingCount, ns, kKeyCount };
 static_assert(kKeyCount <= 32, "one bit per key");
+// What only whole frames have is left out at its default, so that fronts from before it are read, and read by programs
+// from before it.
+bool may_be_absent(const SettingRow& row) { return row.wire_bytes == 0; }
 const char* key_name(int key) { return key == flip ? "flip" : key == ns ? "ns" : kSettingList[key].name; }
 
 struct Text {
@@ -109,6 +112,9 @@ Status read_candidate(Text line, unsigned line_number, Candidate* c) {
       return failure("line %u: '%s' has an invalid value", line_number, shown.text);
     seen |= 1u << key;
   }
+  for (int key = 0; key < kSettingCount; ++key)
+    if (!(seen >> key & 1u) && may_be_absent(kSettingList[key]))
+      settings[key] = kSettingList[key].field.get(Quality()), seen |= 1u << key;
   for (int key = 0; key < kKeyCount; ++key)
     if (key != flip && !(seen >> key & 1u)) return failure("line %u: %s= is missing", line_number, key_name(key));
   for (int i = 0; i < kSettingCount; ++i) {
@@ -170,9 +176,11 @@ struct Value {
 void append_quality(const Quality& quality, char* text, std::size_t size, std::size_t* length) {
   CHECK(text != nullptr);
   constexpr int kDigits = 9;  // as many as a float needs
-  for (const SettingRow& row : kSettingList)
+  for (const SettingRow& row : kSettingList) {
+    if (may_be_absent(row) && row.field.get(quality) == row.field.get(Quality())) continue;
     append(text, size, length, "%s%s=%s", *length && text[*length - 1] != '\n' ? " " : "", row.name,
            Value(row, quality, kDigits).text);
+  }
 }
 
 }  // namespace

@@ -82,10 +82,13 @@ Status parse_coherence(const std::string& text, CoherenceMode* mode) {
 
 namespace {
 
-Status read_coherence(const CommonOptions& o, Settings* settings) {
+Status read_others(const CommonOptions& o, Settings* settings) {
   if (o.coherence_table < 1 || o.coherence_table > kCoherenceTableSideMax)
     return failure("--coherence-table is %u: it must lie in 1 … %u", o.coherence_table, kCoherenceTableSideMax);
   settings->coherence_table = o.coherence_table;
+  if (!(o.pixels_per_degree >= 1 && o.pixels_per_degree <= 1000))
+    return failure("--pixels-per-degree is %g: it must lie in 1 … 1000", o.pixels_per_degree);
+  settings->pixels_per_degree = static_cast<float>(o.pixels_per_degree);
   return parse_coherence(o.coherence, &settings->coherence);
 }
 
@@ -104,7 +107,7 @@ Status read_settings(const CommonOptions& o, Settings* settings) {
   RETURN_IF_ERROR(check_limit(Quantity::camera_index, double(o.camera_index), "--camera-index"));
   for (int i = 0; i < kSettingCount; ++i)
     RETURN_IF_ERROR(read_setting(kSettingList[i], o.settings.options[i], settings));
-  RETURN_IF_ERROR(read_coherence(o, settings));
+  RETURN_IF_ERROR(read_others(o, settings));
   ExposureChoice exposure;
   float factor;
   RETURN_IF_ERROR(parse_exposure(o.exposure, &exposure, &factor));  // checked even by commands that show nothing

@@ -20,10 +20,9 @@ struct Range {
   void add(const Vec3& radiance) { low = min(low, radiance), high = max(high, radiance); }
 };
 
-// Whether the Michelson contrast of what the display shows, its own reflection included, stays below a share of the
-// selection's. False for radiances that are not finite.
-bool is_low_contrast(const Range& range, const Selection& selection, float share) {
-  const float contrast = share * selection.contrast;
+// Whether the Michelson contrast of what the display shows, its own reflection included, stays below `contrast`. False
+// for radiances that are not finite.
+bool is_low_contrast(const Range& range, const Selection& selection, float contrast) {
   for (int c = 0; c < 3; ++c) {
     const float high = std::min(range.high[c], selection.white), low = std::min(range.low[c], selection.white);
     if (!(high - low < contrast * (high + low + selection.flare))) return false;
@@ -33,8 +32,8 @@ bool is_low_contrast(const Range& range, const Selection& selection, float share
 
 // Whether normals are so close that light changes by no more than the contrast: by about the angle between them in
 // light that falls at 45 degrees.
-bool is_same_side(const FrameData& frame, const Vec3& a, const Vec3& b) {
-  const float angle = frame.selection.contrast;
+bool is_same_side(float contrast, const Vec3& a, const Vec3& b) {
+  const float angle = contrast;
   return dot(a, b) > 1 - angle * angle * 0.5f;
 }
 
@@ -82,21 +81,21 @@ bool has_smooth_light(const FrameData& frame, const Surface& s) {
   return !culls(m, s.front, frame.mask) && frame.eye_media.depth == 0;
 }
 
-bool is_flat(const FrameData& frame, const PixelCell& cell) {
+bool is_flat(const FrameData& frame, const PixelCell& cell, float contrast) {
   const CellCorner& first = *cell.corner[0];
   Range range;
   for (const CellCorner* corner : cell.corner) {
     CHECK(corner->known);
     if (corner->material != first.material || !corner->is_smooth) return false;
-    if (first.material && !is_same_side(frame, corner->normal, first.normal)) return false;
+    if (first.material && !is_same_side(contrast, corner->normal, first.normal)) return false;
     range.add(corner->radiance);
   }
   if (first.material && has_texture(*frame.scene, *first.material)) return false;
-  return is_low_contrast(range, frame.selection, 1);
+  return is_low_contrast(range, frame.selection, contrast);
 }
 
-bool predict(const FrameData& frame, const PixelCell& cell, const Surface& s, std::uint32_t column, std::uint32_t row,
-             Vec3* radiance) {
+bool predict(const FrameData& frame, const PixelCell& cell, float contrast, const Surface& s, std::uint32_t column,
+             std::uint32_t row, Vec3* radiance) {
   CHECK(column < kCellSide && row < kCellSide);
   if (!has_smooth_light(frame, s)) return false;
   const float x = static_cast<float>(column) * cell.across, y = static_cast<float>(row) * cell.down;
@@ -108,7 +107,8 @@ bool predict(const FrameData& frame, const PixelCell& cell, const Surface& s, st
   for (int c = 0; c < 4; ++c) {
     const CellCorner& corner = *cell.corner[c];
     Vec3 predicted;
-    if (corner.material != s.material || !corner.is_smooth || !is_same_side(frame, corner.normal, s.normal)) continue;
+    if (corner.material != s.material || !corner.is_smooth || !is_same_side(contrast, corner.normal, s.normal))
+      continue;
     if (!recolor(corner, s, &predicted)) continue;
     range.add(predicted);
     sum += predicted * weight[c];
@@ -117,7 +117,7 @@ bool predict(const FrameData& frame, const PixelCell& cell, const Surface& s, st
   }
   // The fewer, the more they must agree.
   if (count < 2 || !(sum_weight > 0)) return false;
-  if (!is_low_contrast(range, frame.selection, 0.25f * static_cast<float>(count))) return false;
+  if (!is_low_contrast(range, frame.selection, 0.25f * static_cast<float>(count) * contrast)) return false;
   *radiance = sum * (1 / sum_weight);
   return true;
 }

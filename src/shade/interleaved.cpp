@@ -221,7 +221,7 @@ void trace_sample(Tracer* tracer, const SharedTile& tile, std::uint32_t sample, 
     tracer->tile_pixel = i;
     tracer->first_surface = hit ? s : nullptr;
     observe_pixel(tracer, column, row);
-    if (frame.first_hits) keep_first_hit(frame, sample, column, row, first.hit[i]);
+    if (frame.first_hits) keep_first_hit(tracer, sample, column, row, first.hit[i]);
     Vec3* pixel = &image.at(column, row);
     Vec3 sum = sample_radiance(tracer, first.ray[i], first.hit[i], tracer->first_surface);
     if (sample > 0) sum = *pixel + sum;

@@ -5,6 +5,9 @@
 // quarter is first completed to a checkerboard, by the diagonals, as in [Zhou et al. 2012, "Image Zooming Using
 // Directional Cubic Convolution Interpolation", sec. 2] with means for cubics. At the picture's edges it is mirrored.
 //
+// An interleaved picture traces one half of the checkerboard and the next picture the other half; what is missing comes
+// from the last picture where that is still right; see carried.h.
+//
 // A pixel depends on those at most two columns and rows away: the picture does not depend on how it is divided.
 #pragma once
 #include "shade/strip.h"
@@ -15,9 +18,10 @@ namespace pocketray {
 constexpr std::uint32_t kRowsAbove = 2, kRowsBelow = 1;
 constexpr std::uint32_t kWindowRows = kRowsAbove + kTileSide + kRowsBelow;
 
-constexpr bool on_lattice(Resolution resolution, std::uint32_t column, std::uint32_t row) {
+// `parity` is that of an interleaved checkerboard, LastPicture::parity.
+constexpr bool on_lattice(Resolution resolution, std::uint32_t column, std::uint32_t row, std::uint32_t parity = 0) {
   return resolution == Resolution::full ||
-         (resolution == Resolution::checkerboard ? (column + row) % 2 == 0 : (column | row) % 2 == 0);
+         (resolution == Resolution::half ? (column | row) % 2 == 0 : (column + row + parity) % 2 == 0);
 }
 
 constexpr std::uint32_t window_pixel_count(const Settings& settings) { return kWindowRows * settings.width; }
@@ -28,8 +32,8 @@ constexpr bool plans_lattice(const Settings& settings) {
 }
 inline std::size_t lattice_need(const Settings& settings) {
   if (!plans_lattice(settings)) return 0;
-  return arena_need<Vec3>(std::size_t(settings.threads) * window_pixel_count(settings)) +
-         arena_need<std::uint8_t>(std::size_t(settings.threads) * window_pixel_count(settings));
+  const std::size_t count = std::size_t(settings.threads) * window_pixel_count(settings);
+  return arena_need<Vec3>(count) + arena_need<std::uint8_t>(count);
 }
 // Gives a tracer its window, of window_pixel_count() each.
 void keep_window(Array<Vec3> pixels, Array<std::uint8_t> states, Tracer* tracer);

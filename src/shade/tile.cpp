@@ -2,6 +2,7 @@
 
 #include "base/check.h"
 #include "effect/effect_probe.h"
+#include "shade/carried.h"
 #include "shade/even_points.h"
 #include "shade/filters.h"
 #include "shade/pixel.h"
@@ -28,8 +29,12 @@ void set_directions(const CameraRays& camera, const Tile& tile, const Vec2& offs
 
 }  // namespace
 
-void keep_first_hit(const FrameData& frame, std::uint32_t sample, std::uint32_t column, std::uint32_t row,
-                    const Hit& hit) {
+void keep_first_hit(Tracer* tracer, std::uint32_t sample, std::uint32_t column, std::uint32_t row, const Hit& hit) {
+  const FrameData& frame = *tracer->frame;
+  if (tracer->window.steps.count) {
+    if (sample == 0) keep_step(tracer, column, row, hit);
+    return;
+  }
   std::size_t width = frame.settings.width;
   frame.first_hits[(std::size_t(sample) * frame.settings.height + row) * width + column] = hit;
 }
@@ -50,7 +55,7 @@ Vec3 pixel_radiance(Tracer* tracer, std::uint32_t column, std::uint32_t row, Sur
     Ray ray = pixel_ray(frame, column, row, rook_point(sample, sample_count));
     Hit hit;
     frame.first_rays->closest(frame.accel, ray, visible_filter(frame), &hit, &tracer->stats);
-    if (frame.first_hits) keep_first_hit(frame, sample, column, row, hit);
+    if (frame.first_hits) keep_first_hit(tracer, sample, column, row, hit);
     Surface surface;
     if (first && sample == 0) first->material = nullptr;
     if ((frame.first_hits || (first && sample == 0)) && hit.triangle != kNoTriangle) {
@@ -103,7 +108,7 @@ void trace_tile(Tracer* tracer, const Tile& tile, const PixelRows& image) {
     frame.first_rays->closest_packet(frame.accel, packet, visible_filter(frame), hits, &tracer->stats);
     if (frame.first_hits)
       for (std::uint32_t i = 0; i < tile.count; ++i)
-        keep_first_hit(frame, sample, tile.column[i], tile.row[i], hits[i]);
+        keep_first_hit(tracer, sample, tile.column[i], tile.row[i], hits[i]);
     add_sample(tracer, tile, packet, hits, sum);
   }
   for (std::uint32_t i = 0; i < tile.count; ++i)

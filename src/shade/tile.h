@@ -22,9 +22,8 @@ constexpr std::uint32_t kPacketRaysMin = kPacketMax / 4;
 // For a RayObserver.
 void observe_pixel(Tracer* tracer, std::uint32_t column, std::uint32_t row);
 
-// Into FrameData::first_hits, which is there.
-void keep_first_hit(const FrameData& frame, std::uint32_t sample, std::uint32_t column, std::uint32_t row,
-                    const Hit& hit);
+// Into FrameData::first_hits, which is there; or what the window wants of the hit.
+void keep_first_hit(Tracer* tracer, std::uint32_t sample, std::uint32_t column, std::uint32_t row, const Hit& hit);
 
 // The mean of the pixel's samples. `first`, unless null, receives the surface at the first sample's first hit; its
 // material is null if there is none.

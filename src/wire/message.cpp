@@ -134,6 +134,7 @@ void fields(Io& io, Camera* c) {
 // A count or a choice is an integer of the row's size.
 template <class Io>
 void setting(Io& io, const SettingRow& row, Settings* settings) {
+  if (row.wire_bytes == 0) return;
   double value = row.field.get(*settings);
   if (row.field.kind == SettingKind::real) {
     float real = static_cast<float>(value);

@@ -13,8 +13,13 @@
 
 namespace pocketray {
 
+constexpr int settings_on_wire() {
+  int count = 0;
+  for (const SettingRow& row : kSettingList) count += row.wire_bytes > 0;
+  return count;
+}
 // Adding a setting to requests adds 1 to the version; for any other change of the format, raise the first number.
-constexpr std::uint16_t kWireVersion = 14 + (kSettingCount - 6);
+constexpr std::uint16_t kWireVersion = 14 + (settings_on_wire() - 6);
 constexpr std::uint32_t kHeaderBytes = 8;
 constexpr std::uint32_t kPieceBytesMax = 1u << 16;  // of a scene, per message
 constexpr std::uint32_t kPingBytesMax = 1u << 16;   // of a pong's payload

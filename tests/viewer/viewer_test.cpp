@@ -294,9 +294,9 @@ TEST_CASE("viewer_refines_what_rests") {
     Quality some;
     const Picture exact = picture_at(20, all, budgeted, 0), moved = picture_at(40, all, budgeted, 19);
     CHECK(!same_picture(moved, exact));
-    for (int i = 0; i < 2; ++i) {
-      some.selective_contrast = i == 0 ? 0.25f : 0;
-      some.resolution = i == 0 ? Resolution::full : Resolution::half;
+    for (int i = 0; i < 4; ++i) {
+      some.selective_contrast = i % 3 == 0 ? 0.25f : 0;
+      some.resolution = i == 0 ? Resolution::full : i == 1 ? Resolution::half : Resolution::interleaved;
       CHECK(same_picture(picture_at(20, some, budgeted, 0), exact));
       CHECK(same_picture(picture_at(40, some, budgeted, 19), moved));
       Quality last;
