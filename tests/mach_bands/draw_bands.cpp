@@ -1,7 +1,7 @@
 // draw_bands FOLDER: the table and the pictures of `make mach-bands`: the cube by each reconstruction of radiosity, and
 // what lateral inhibition makes of it. See tests/radiosity/mach_bands.h.
 // draw_bands METHOD quads|triangles: one frame of eight patches a side, whose instructions are counted by
-//   valgrind --tool=callgrind --collect-atstart=no --toggle-collect='pocketray::render_frame*'
+//   valgrind --tool=callgrind --collect-atstart=no --toggle-collect='pocketray::trace_spans*'
 #define DOCTEST_CONFIG_IMPLEMENT
 #include <doctest/doctest.h>
 
@@ -88,7 +88,7 @@ int run(const std::string& folder) {
   return 0;
 }
 
-// One frame, for valgrind to count render_frame() in.
+// One frame, for valgrind to count.
 int run_once(const std::string& method, const std::string& pieces) {
   for (Reconstruction m : kMethods)
     for (Pieces p : {Pieces::quads, Pieces::triangles})
