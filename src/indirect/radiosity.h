@@ -26,7 +26,7 @@ inline Vec3 radiosity_of_grid(const Scene& scene, const RadiosityGrid& grid, con
   const PatchCorners corners = {node, node + 1, node + grid.columns, node + grid.columns + 1};
   if (how == Reconstruction::bicubic) return bicubic_patch(corners, s, t);
   if (how == Reconstruction::bilinear) return bilinear_patch(corners, s, t);
-  return how == Reconstruction::constant ? constant_patch(corners) : smooth_cell(grid, corners, s, t, how);
+  return how == Reconstruction::constant ? constant_patch(corners) : smooth_cell(corners, s, t, how);
 }
 
 // The corners of the part of a triangle around a point, whose barycentric weights become those in the part.

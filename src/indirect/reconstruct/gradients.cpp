@@ -1,7 +1,6 @@
 #include "indirect/reconstruct/gradients.h"
 
 #include "base/check.h"
-#include "indirect/reconstruct/limit.h"
 #include "indirect/reconstruct/triangle.h"
 
 namespace pocketray {
@@ -14,7 +13,7 @@ struct Fit {
   Vec3 normal;              // not normalised
   Vec3 around;              // sum of the edges opposite: 0 where triangles surround the corner
   float around_length;
-  Vec3 low, high, share;
+  Vec3 low, high;
 };
 
 // Visits the parts of all triangles that store values at corners. In a solution each of the corners is of one part; a
@@ -108,7 +107,7 @@ void fit_planes(const Scene& scene, Array<Fit> fits, Array<RadiosityGradient> gr
       for (int i = 0; i < 3; ++i)
         for (int k : {next_corner(i), previous_corner(i)}) {
           const std::uint32_t from = part.corners.value[i], to = part.corners.value[k];
-          visit(&fits[from], from, to, part.place[k] - part.place[i],
+          visit(&fits[from], to, part.place[k] - part.place[i],
                 scene.radiosity_values[to] - scene.radiosity_values[from]);
         }
     });
@@ -116,24 +115,30 @@ void fit_planes(const Scene& scene, Array<Fit> fits, Array<RadiosityGradient> gr
   each_part(scene, [&](const RadiosityPart& part) {
     for (int i = 0; i < 3; ++i) add_part(part, i, &fits[part.corners.value[i]]);
   });
-  each_corner([&](Fit* fit, std::uint32_t, std::uint32_t, const Vec3& edge, const Vec3& variation) {
-    add_edge(edge, variation, fit);
-  });
+  each_corner([](Fit* fit, std::uint32_t, const Vec3& edge, const Vec3& variation) { add_edge(edge, variation, fit); });
   for (std::uint32_t i = 0; i < fits.count; ++i) {
     gradients[i] = solution_of(fits[i]);
     if (is_border(fits[i])) fits[i].xx_yy_zz = fits[i].xy_yz_zx = {0, 0, 0};
     for (Vec3& right : fits[i].right) right = {0, 0, 0};
   }
-  each_corner([&](Fit* fit, std::uint32_t, std::uint32_t to, const Vec3& edge, const Vec3& variation) {
+  each_corner([&](Fit* fit, std::uint32_t to, const Vec3& edge, const Vec3& variation) {
     if (is_border(*fit)) add_edge(edge, variation * 2.0f - gradients[to].along(edge), fit);
   });
   for (std::uint32_t i = 0; i < fits.count; ++i)
     if (is_border(fits[i])) gradients[i] = solution_of(fits[i]);
 }
 
+// Takes from a gradient what leaves the range along an edge, and only that: elsewhere it stays as it is.
+void clip(const Fit& fit, const Vec3& value, const Vec3& edge, RadiosityGradient* gradient) {
+  const float square = dot(edge, edge);
+  if (!(square > 0)) return;
+  const Vec3 step = gradient->along(edge) * 0.5f, ends = min(max(value + step, fit.low), fit.high);
+  const Vec3 excess = (value + step - ends) * (2 / square);
+  gradient->dx += excess * -edge.x, gradient->dy += excess * -edge.y, gradient->dz += excess * -edge.z;
+}
+
 void limit_planes(const Scene& scene, Array<Fit> fits, Array<RadiosityGradient> gradients) {
-  for (std::uint32_t i = 0; i < fits.count; ++i)
-    fits[i].low = fits[i].high = scene.radiosity_values[i], fits[i].share = {1, 1, 1};
+  for (std::uint32_t i = 0; i < fits.count; ++i) fits[i].low = fits[i].high = scene.radiosity_values[i];
   each_part(scene, [&](const RadiosityPart& part) {
     for (std::uint32_t at : part.corners.value)
       for (std::uint32_t other : part.corners.value) {
@@ -144,17 +149,10 @@ void limit_planes(const Scene& scene, Array<Fit> fits, Array<RadiosityGradient> 
   each_part(scene, [&](const RadiosityPart& part) {
     for (int i = 0; i < 3; ++i)
       for (int k : {next_corner(i), previous_corner(i)}) {
-        Fit& fit = fits[part.corners.value[i]];
-        const Vec3& value = scene.radiosity_values[part.corners.value[i]];
-        const Vec3 step = gradients[part.corners.value[i]].along(part.place[k] - part.place[i]) * 0.5f;
-        for (int channel = 0; channel < 3; ++channel) {
-          const float share = share_within({fit.low[channel], fit.high[channel]}, value[channel], step[channel]);
-          if (share < fit.share[channel]) fit.share[channel] = share;
-        }
+        const std::uint32_t at = part.corners.value[i];
+        clip(fits[at], scene.radiosity_values[at], part.place[k] - part.place[i], &gradients[at]);
       }
   });
-  for (std::uint32_t i = 0; i < fits.count; ++i)
-    gradients[i].dx *= fits[i].share, gradients[i].dy *= fits[i].share, gradients[i].dz *= fits[i].share;
 }
 
 }  // namespace

@@ -34,9 +34,9 @@ std::size_t gradients_scratch_need(const Scene& scene);
 // The tangent plane at a corner is fitted to the variations along the edges that meet there, as [Bastos92] fig. 5 does
 // for patches: by least squares, weighted by the inverse cubes of their lengths, so that parabolas along lines of
 // unequal steps are reproduced. On the border of a surface, where edges leave to one side only, to twice the variation
-// less what the gradient at the other end says: the slope of the parabola, as on grids. Gradients are shortened, each
-// channel by itself, until all planes half an edge away lie between the least and the largest value at the corner and
-// its neighbours. Corners that do not share a value have gradients of their own.
+// less what the gradient at the other end says: the slope of the parabola, as on grids. What would lead, half an edge
+// away, out of the range of the values at the corner and its neighbours is taken from a gradient, along that edge
+// alone. Corners that do not share a value have gradients of their own.
 const RadiosityGradient* set_gradients(const Scene& scene, Arena* keep, Arena* scratch);
 
 }  // namespace pocketray

@@ -12,7 +12,7 @@ Vec3 light_at(const TriangleLight& light, const float (&weight)[3], Reconstructi
 
 }  // namespace
 
-Vec3 smooth_cell(const RadiosityGrid& grid, const PatchCorners& corners, float s, float t, Reconstruction how) {
+Vec3 smooth_cell(const PatchCorners& corners, float s, float t, Reconstruction how) {
   const bool below = s >= t;  // the half with (1, 0), whose corners follow the cell's border as the other's do
   const RadiosityNode* const nodes[3] = {corners.b00, below ? corners.b10 : corners.b11,
                                          below ? corners.b11 : corners.b01};
@@ -26,13 +26,9 @@ Vec3 smooth_cell(const RadiosityGrid& grid, const PatchCorners& corners, float s
     light.value[i] = nodes[i]->value;
     light.to_next[i] = towards(next_corner(i)), light.to_previous[i] = towards(previous_corner(i));
   }
-  // Right triangles: only the diagonal's slant depends on the cell's sides, 1 / |along_s| and 1 / |along_t|.
-  const float square_s = dot(grid.along_s, grid.along_s), square_t = dot(grid.along_t, grid.along_t);
-  const float sum = square_s + square_t, diagonal = sum > 0 ? 0.5f * (square_s - square_t) / sum : 0;
-  if (below)
-    light.slant[0] = -0.5f, light.slant[1] = diagonal, light.slant[2] = 0.5f;
-  else
-    light.slant[0] = 0.5f, light.slant[1] = -0.5f, light.slant[2] = diagonal;
+  // As of a square: an affine map keeps what is smooth.
+  constexpr float kSlants[2][3] = {{0.5f, -0.5f, 0}, {-0.5f, 0, 0.5f}};
+  for (int i = 0; i < 3; ++i) light.slant[i] = kSlants[below][i];
   const float weight[3] = {1 - (below ? s : t), below ? s - t : s, below ? t : t - s};
   return light_at(light, weight, how);
 }

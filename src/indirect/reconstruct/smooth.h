@@ -12,7 +12,7 @@ inline bool is_smooth_on_triangles(Reconstruction how) {
 }
 
 // In the half of a cell, divided along its diagonal from (0, 0) to (1, 1), that holds (s, t).
-Vec3 smooth_cell(const RadiosityGrid& grid, const PatchCorners& corners, float s, float t, Reconstruction how);
+Vec3 smooth_cell(const PatchCorners& corners, float s, float t, Reconstruction how);
 
 // In the part of a triangle that holds the barycentric place (1 − u − v, u, v); `place` is what the triangle's side
 // refers to, no grid.
