@@ -211,9 +211,12 @@ mach-bands: setup-tests configure
 	cmake --build $(BUILD) -j$(JOBS) --target draw_bands
 	@mkdir -p $(BUILD)/mach-bands && $(BUILD)/draw_bands $(BUILD)/mach-bands
 	@cd $(BUILD)/mach-bands && if command -v montage >/dev/null; then \
-	  montage -font DejaVu-Sans -pointsize 13 -depth 8 -label constant constant.ppm -label bilinear bilinear.ppm \
-	    -label 'bicubic, Hermite' bicubic.ppm -label 'lateral inhibition' constant-bands.ppm \
-	    -label 'lateral inhibition' bilinear-bands.ppm -label 'lateral inhibition' bicubic-bands.ppm -tile 3x -geometry 240x180+3+3 mach-bands.png && \
+	  quads="constant bilinear quadratic cubic bicubic"; pictures=; \
+	  triangles="triangles-constant triangles-linear triangles-quadratic triangles-cubic"; \
+	  seen() { for name; do pictures="$$pictures -label $$name $$name.ppm"; done; }; \
+	  bands() { for name; do pictures="$$pictures -label lateral-inhibition $$name-bands.ppm"; done; }; \
+	  seen $$quads; bands $$quads; seen $$triangles reference; bands $$triangles; \
+	  montage -font DejaVu-Sans -pointsize 13 -depth 8 $$pictures -tile 5x -geometry 240x180+3+3 mach-bands.png && \
 	  echo "the picture: $(BUILD)/mach-bands/mach-bands.png"; \
 	else echo "pictures: $(BUILD)/mach-bands/*.ppm (ImageMagick puts them side by side)"; fi
 

@@ -56,8 +56,8 @@ Status load_front(const Renderer& renderer, const FrontSource& source, const Con
 
 constexpr IndirectChoice kInstantRadiosity = indirect_choice(Effect::instant_radiosity);
 
-// Plans with virtual lights, for undersampling and source selection, if a candidate has them, and the most points per
-// area light that fit; drops candidates that need more.
+// Plans with virtual lights, gradients of stored light, for undersampling and source selection, if a candidate has
+// them, and the most points per area light that fit; drops candidates that need more.
 Status plan_front(Renderer* renderer, const SceneStorage& storage, const OutputNeed& output, const FrontSource& source,
                   const ContentHash* identity, OpenFront* f) {
   renderer->settings.points_per_area_light = 1;
@@ -76,6 +76,8 @@ Status plan_front(Renderer* renderer, const SceneStorage& storage, const OutputN
         renderer->settings.resolution = resolution;
       if (f->front.candidates[i].moving_contrast == MovingContrast::as_seen)
         renderer->settings.moving_contrast = MovingContrast::as_seen;
+      if (is_smooth_on_triangles(f->front.candidates[i].reconstruction))
+        renderer->settings.reconstruction = f->front.candidates[i].reconstruction;
       if (f->front.candidates[i].environment_shadows > 0)
         renderer->settings.environment_shadows = f->front.candidates[i].environment_shadows;
       if (f->front.candidates[i].light_tolerance > 0)

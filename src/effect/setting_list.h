@@ -16,7 +16,7 @@ inline constexpr const char* kAreaIrradianceNames[] = {"points", "analytic"};
 inline constexpr const char* kNormalNames[] = {"scene", "flat"};
 inline constexpr const char* kResolutionNames[] = {"full", "checkerboard", "half", "interleaved"};
 inline constexpr const char* kMovingContrastNames[] = {"as-resting", "as-seen"};
-inline constexpr const char* kReconstructionNames[] = {"constant", "bilinear", "bicubic"};
+inline constexpr const char* kReconstructionNames[] = {"constant", "bilinear", "bicubic", "quadratic", "cubic"};
 
 // "auto", "none", then the effects that are methods of indirect light.
 constexpr int kIndirectChoiceCount = 2 + __builtin_popcount(kIndirectEffects);
@@ -162,8 +162,8 @@ inline constexpr SettingRow kSettingList[] = {
      choice_field<&Quality::indirect>(kIndirectNames.names), 1, kIndirectEffects, kIndirectEffects, true, kAsAsked,
      indirect_sweep(), nullptr, ""},
     {"reconstruction",
-     "stored light between the nodes of its grids",
-     "",
+     "stored light between the places where it is stored",
+     "quadratic and cubic also smooth it on triangles",
      nullptr,
      choice_field<&Quality::reconstruction>(kReconstructionNames),
      1,
@@ -171,7 +171,8 @@ inline constexpr SettingRow kSettingList[] = {
      bit(Effect::radiosity),
      false,
      double(Reconstruction::bicubic),
-     {double(Reconstruction::constant), double(Reconstruction::bilinear), double(Reconstruction::bicubic)},
+     {double(Reconstruction::constant), double(Reconstruction::bilinear), double(Reconstruction::quadratic),
+      double(Reconstruction::cubic), double(Reconstruction::bicubic)},
      nullptr,
      ""},
     {"virtual-lights",

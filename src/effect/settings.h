@@ -17,8 +17,10 @@ enum class NormalMode : std::uint8_t { as_scene, flat };
 
 // Indirect light: the scene's own, none, or the effect of kIndirectEffects with that index, counted from `first`.
 enum class IndirectChoice : std::uint8_t { automatic, none, first };
-// Of stored light, between the places where it is stored.
-enum class Reconstruction : std::uint8_t { constant, bilinear, bicubic };
+// Of stored light, between the places where it is stored. On the cells of grids: their mean, bilinear, Hermite patches,
+// two triangles of the element of Powell and Sabin, two of Clough and Tocher. On triangles: their mean, linear, linear
+// again, and the two elements.
+enum class Reconstruction : std::uint8_t { constant, bilinear, bicubic, quadratic, cubic };
 
 // Shadow rays to an area light: to some of its points first, and to the others where these differ, or to every point.
 enum class AreaShadows : std::uint8_t { adaptive, every };

@@ -168,8 +168,10 @@ Status build_renderer_unexposed(Renderer* renderer) {
   if (moves(*renderer)) renderer->pose = make_pose(renderer->scene, &renderer->persistent_arena);
   make_recolorable(renderer);
   const std::size_t used = renderer->persistent_arena.used;
-  renderer->frame.indirect = prepare_indirect(renderer->scene, renderer->effects.mask, &renderer->persistent_arena);
-  CHECK_LE(renderer->persistent_arena.used - used, indirect_need(renderer->scene, renderer->effects.mask));
+  renderer->frame.indirect = prepare_indirect(renderer->scene, renderer->settings, renderer->effects.mask,
+                                              &renderer->persistent_arena, &renderer->frame_arena);
+  CHECK_LE(renderer->persistent_arena.used - used,
+           indirect_need(renderer->scene, renderer->settings, renderer->effects.mask).keep);
   if (plans_environment_lights(renderer->scene, renderer->settings))
     renderer->environment_lights =
         new (arena_array<EnvironmentLights>(&renderer->persistent_arena, 1).data) EnvironmentLights();
@@ -252,6 +254,9 @@ Status change_settings(Renderer* renderer, const Settings& settings) {
                    settings.points_per_area_light);
   if (has(effects.mask, Effect::instant_radiosity) && !virtual_lights_of(renderer->frame.indirect))
     return failure("memory is planned without virtual lights: plan with --indirect instant-radiosity");
+  if (has(effects.mask, Effect::radiosity) && is_smooth_on_triangles(settings.reconstruction) &&
+      !has_gradients(renderer->scene, renderer->frame.indirect))
+    return failure("memory is planned without gradients of stored light: plan with --reconstruction cubic");
   if (has(effects.mask, Effect::environment_shadow) && !renderer->environment_lights)
     return failure("memory is planned without shadows from the environment: plan with --environment-shadows above 0");
   if (has(effects.mask, Effect::source_selection) && renderer->light_entries.empty())

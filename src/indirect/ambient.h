@@ -13,8 +13,8 @@ struct AmbientIndirect {
   static IndirectUse use(const Scene& scene) {
     return is_zero(scene.info.ambient) ? IndirectUse::nothing : IndirectUse::automatic;
   }
-  static std::size_t need(const Scene&) { return 0; }
-  static const void* prepare(const Scene&, Arena*) { return nullptr; }
+  static IndirectNeed need(const Scene&, const Quality&) { return {}; }
+  static const void* prepare(const Scene&, const Quality&, Arena*, Arena*) { return nullptr; }
   static Vec3 radiance(const IndirectPoint& at) {
     effect_entered<Effect::ambient>();
     return at.diffuse * at.scene.info.ambient;

@@ -8,8 +8,9 @@
 //   kReference      how the reference treats it
 //   kPresent, kAbsent       reasons in plans: what the scene has for it, or lacks
 //   use(scene)      whether the scene has what it takes
-//   need(scene)     upper bound of the bytes that prepare() takes
-//   prepare(scene, keep)    once, before the first frame; returns the data that radiance() reads, or null
+//   need(scene, how)        upper bound of the bytes that prepare() takes
+//   prepare(scene, how, keep, scratch)      once, before the first frame; returns the data that radiance() reads, or
+//   null; leaves `scratch` as it was
 //   radiance(point)         leaving a diffuse surface, the same in all directions; inlined into surface evaluation
 //   exact(scene, diffuse)   radiance() in double precision, for the reference
 //   bound(scene, material)  upper bound of radiance() on the material, per component
@@ -43,6 +44,11 @@ enum class IndirectReference { nothing, model, always };
 // Whether a method has anything to show in a scene: nothing; on request; also by default.
 enum class IndirectUse { nothing, requested, automatic };
 
+// Bytes, of the persistent arena and while a method is prepared.
+struct IndirectNeed {
+  std::size_t keep = 0, scratch = 0;
+};
+
 // A method as data, for loops over the list.
 struct IndirectInfo {
   const char* name;
@@ -50,8 +56,8 @@ struct IndirectInfo {
   IndirectReference reference;
   const char *present, *absent;
   IndirectUse (*use)(const Scene& scene);
-  std::size_t (*need)(const Scene& scene);
-  const void* (*prepare)(const Scene& scene, Arena* keep);
+  IndirectNeed (*need)(const Scene& scene, const Quality& how);
+  const void* (*prepare)(const Scene& scene, const Quality& how, Arena* keep, Arena* scratch);
   Vec3 (*radiance)(const IndirectPoint& point);
   Vec3d (*exact)(const Scene& scene, const Vec3d& diffuse);
   float (*bound)(const Scene& scene, const Material& material);

@@ -21,19 +21,33 @@ struct IndirectData {
   const void* prepared[IndirectList::kCount] = {};
 };
 
-// Bytes that the methods of a plan take from the persistent arena.
-inline std::size_t indirect_need(const Scene& scene, EffectMask mask) {
-  std::size_t bytes = 0;
+// Of all methods of a plan.
+inline IndirectNeed indirect_need(const Scene& scene, const Quality& how, EffectMask mask) {
+  IndirectNeed sum;
   for (const IndirectInfo& info : IndirectList::kInfos)
-    if (mask & info.effects) bytes += info.need(scene);
-  return bytes;
+    if (mask & info.effects) {
+      const IndirectNeed need = info.need(scene, how);
+      sum.keep = size_sum(sum.keep, need.keep);
+      if (need.scratch > sum.scratch) sum.scratch = need.scratch;
+    }
+  return sum;
 }
 
-inline IndirectData prepare_indirect(const Scene& scene, EffectMask mask, Arena* keep) {
+inline IndirectData prepare_indirect(const Scene& scene, const Quality& how, EffectMask mask, Arena* keep,
+                                     Arena* scratch) {
   IndirectData data;
   for (int i = 0; i < IndirectList::kCount; ++i)
-    if (mask & IndirectList::kInfos[i].effects) data.prepared[i] = IndirectList::kInfos[i].prepare(scene, keep);
+    if (mask & IndirectList::kInfos[i].effects)
+      data.prepared[i] = IndirectList::kInfos[i].prepare(scene, how, keep, scratch);
   return data;
+}
+
+// Whether a plan has what quadratic and cubic reconstruction reads; linear light on triangles takes nothing.
+inline bool has_gradients(const Scene& scene, const IndirectData& data) {
+  if (scene.radiosity_values.empty()) return true;
+  for (int i = 0; i < IndirectList::kCount; ++i)
+    if (IndirectList::kInfos[i].effects == RadiosityIndirect::kEffects) return data.prepared[i] != nullptr;
+  return false;
 }
 
 // The lights of InstantRadiosity, which each frame places anew; null if it is not prepared.

@@ -22,7 +22,7 @@ IndirectUse InstantRadiosity::use(const Scene& scene) {
   return shines && scatters ? IndirectUse::requested : IndirectUse::nothing;
 }
 
-const void* InstantRadiosity::prepare(const Scene&, Arena* keep) {
+const void* InstantRadiosity::prepare(const Scene&, const Quality&, Arena* keep, Arena*) {
   VirtualLights* lights = arena_array<VirtualLights>(keep, 1).data;
   *lights = VirtualLights();
   return lights;

@@ -41,8 +41,8 @@ struct InstantRadiosity {
   static constexpr IndirectReference kReference = IndirectReference::nothing;
   static constexpr const char *kPresent = "light between surfaces", *kAbsent = "no light to send between surfaces";
   static IndirectUse use(const Scene& scene);
-  static std::size_t need(const Scene&) { return arena_need<VirtualLights>(1); }
-  static const void* prepare(const Scene&, Arena* keep);
+  static IndirectNeed need(const Scene&, const Quality&) { return {arena_need<VirtualLights>(1), 0}; }
+  static const void* prepare(const Scene&, const Quality&, Arena* keep, Arena* scratch);
   static Vec3 radiance(const IndirectPoint& at);
   static Vec3d exact(const Scene&, const Vec3d&) { return {0, 0, 0}; }
   static float bound(const Scene&, const Material&) { return 0; }  // in radiance_bound(), which knows the lights

@@ -10,8 +10,8 @@ struct NoIndirect {
   static constexpr IndirectReference kReference = IndirectReference::nothing;
   static constexpr const char *kPresent = "", *kAbsent = "";
   static IndirectUse use(const Scene&) { return IndirectUse::nothing; }
-  static std::size_t need(const Scene&) { return 0; }
-  static const void* prepare(const Scene&, Arena*) { return nullptr; }
+  static IndirectNeed need(const Scene&, const Quality&) { return {}; }
+  static const void* prepare(const Scene&, const Quality&, Arena*, Arena*) { return nullptr; }
   static Vec3 radiance(const IndirectPoint&) { return {0, 0, 0}; }
   static Vec3d exact(const Scene&, const Vec3d&) { return {0, 0, 0}; }
   static float bound(const Scene&, const Material&) { return 0; }

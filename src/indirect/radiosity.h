@@ -4,7 +4,7 @@
 #pragma once
 #include "effect/effect_probe.h"
 #include "indirect/indirect.h"
-#include "indirect/reconstruct/hermite.h"
+#include "indirect/reconstruct/smooth.h"
 #include "indirect/surroundings.h"
 
 namespace pocketray {
@@ -25,7 +25,8 @@ inline Vec3 radiosity_of_grid(const Scene& scene, const RadiosityGrid& grid, con
   const RadiosityNode* node = &scene.radiosity_nodes[grid.node_begin + row * grid.columns + column];
   const PatchCorners corners = {node, node + 1, node + grid.columns, node + grid.columns + 1};
   if (how == Reconstruction::bicubic) return bicubic_patch(corners, s, t);
-  return how == Reconstruction::bilinear ? bilinear_patch(corners, s, t) : constant_patch(corners);
+  if (how == Reconstruction::bilinear) return bilinear_patch(corners, s, t);
+  return how == Reconstruction::constant ? constant_patch(corners) : smooth_cell(corners, s, t, how);
 }
 
 // The corners of the part of a triangle around a point, whose barycentric weights become those in the part.
@@ -50,8 +51,13 @@ struct RadiosityIndirect {
   static IndirectUse use(const Scene& scene) {
     return scene.radiosity_triangles.count ? IndirectUse::automatic : IndirectUse::nothing;
   }
-  static std::size_t need(const Scene&) { return 0; }
-  static const void* prepare(const Scene&, Arena*) { return nullptr; }
+  static IndirectNeed need(const Scene& scene, const Quality& how) {
+    if (!is_smooth_on_triangles(how.reconstruction)) return {};
+    return {gradients_need(scene), gradients_scratch_need(scene)};
+  }
+  static const void* prepare(const Scene& scene, const Quality& how, Arena* keep, Arena* scratch) {
+    return is_smooth_on_triangles(how.reconstruction) ? set_gradients(scene, keep, scratch) : nullptr;
+  }
   static Vec3 radiance(const IndirectPoint& at) {
     const Scene& scene = at.scene;
     if (scene.radiosity_triangles.empty()) return {0, 0, 0};  // --effects all
@@ -72,6 +78,12 @@ struct RadiosityIndirect {
       // Rounding may leave the range of the limited patches.
       return albedo * min(max(value, Vec3{0, 0, 0}), scene.radiosity_info[0].value_max);
     }
+    const Vec3& most = scene.radiosity_info[0].value_max;
+    if (is_smooth_on_triangles(at.reconstruction)) {
+      const auto* gradients = static_cast<const RadiosityGradient*>(at.prepared);
+      const Vec3 value = smooth_part(scene, gradients, t, place, at.u, at.v, at.reconstruction);
+      return albedo * min(max(value, Vec3{0, 0, 0}), most);
+    }
     float weight[3] = {w, at.u, at.v};
     const RadiosityCorners corners = place == kRadiosityAtVertices
                                          ? RadiosityCorners{t.vertex(0), t.vertex(1), t.vertex(2)}
@@ -80,7 +92,7 @@ struct RadiosityIndirect {
                &c = scene.radiosity_values[corners.value[2]];
     const bool constant = at.reconstruction == Reconstruction::constant;
     const Vec3 value = constant ? (a + b + c) * (1.0f / 3) : a * weight[0] + b * weight[1] + c * weight[2];
-    return albedo * min(max(value, Vec3{0, 0, 0}), scene.radiosity_info[0].value_max);
+    return albedo * min(max(value, Vec3{0, 0, 0}), most);
   }
   static Vec3d exact(const Scene&, const Vec3d&) { return {0, 0, 0}; }
   static float bound(const Scene& scene, const Material& material) {

@@ -80,7 +80,9 @@ Status plan_memory_with(const Scene& scene, const Settings& settings, const Effe
   }
   add_part(plan, "accelerator", ArenaKind::persistent, keep);
   add_part(plan, "pose", ArenaKind::persistent, moves ? pose_need(scene) : 0);
-  add_part(plan, "indirect light", ArenaKind::persistent, indirect_need(scene, effects.mask));
+  const IndirectNeed indirect = indirect_need(scene, settings, effects.mask);
+  add_part(plan, "indirect light", ArenaKind::persistent, indirect.keep);
+  scratch = std::max(scratch, indirect.scratch);
   add_part(plan, "environment shadows", ArenaKind::persistent,
            plans_environment_lights(scene, settings) ? arena_need<EnvironmentLights>(1) : 0);
   add_part(plan, "materials", ArenaKind::persistent,

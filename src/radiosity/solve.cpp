@@ -46,6 +46,14 @@ void add_backs(const SceneRays& rays, std::uint32_t threads, std::vector<Patch>*
   }
 }
 
+// The same surfaces, all of them by their triangles.
+Surfaces without_grids(Surfaces surfaces) {
+  surfaces.flat.clear(), surfaces.others.clear();
+  for (std::uint32_t t = 0; t < surfaces.area.size(); ++t)
+    if (surfaces.area[t] > 0) surfaces.others.push_back(t);
+  return surfaces;
+}
+
 // What arrives at a receiver from all patches and from outside, as irradiance / π. Negative x: it lies inside a body.
 Vec3d gather(const SceneRays& rays, const std::vector<Patch>& patches, const std::vector<Vec3d>& radiance,
              const Receiver& at, std::uint32_t seed) {
@@ -158,7 +166,8 @@ Status solve_radiosity(const FrameData& frame, const RadiosityOptions& options, 
   for (const Patch& patch : patches)
     if (patch.is_back)
       for (std::uint32_t t : patch.triangles) back[t] = 1;
-  Places places = place_receivers(scene, surfaces, options, front, back, solution);
+  Places places = place_receivers(scene, options.stores_at_corners ? without_grids(surfaces) : surfaces, options, front,
+                                  back, solution);
   std::vector<char> known(solution->nodes.size(), 1), known_values(solution->values.size(), 1);
   const std::uint32_t node_count = static_cast<std::uint32_t>(places.nodes.size());
   const std::uint32_t count = node_count + static_cast<std::uint32_t>(places.values.size());

@@ -13,6 +13,8 @@ struct RadiosityOptions {
   // Stores light that comes straight from the lights, too, as [Bastos92] does; whoever renders it leaves that out. For
   // comparison: shadows are as coarse as the grids.
   bool stores_direct_light = false;
+  // Flat surfaces, too, store light at the corners of their triangles, halved like others. For comparison with grids.
+  bool stores_at_corners = false;
   std::uint32_t threads = 1;
 };
 

@@ -43,6 +43,7 @@ std::string hash_of(const SceneSource& source, const Scene& scene) {
 Settings dearest(const Scene& scene, Settings settings) {
   settings.indirect = indirect_choice(Effect::instant_radiosity);
   settings.resolution = Resolution::interleaved, settings.moving_contrast = MovingContrast::as_seen;
+  settings.reconstruction = Reconstruction::cubic;
   std::uint32_t own = settings.points_per_area_light;
   for (std::uint32_t points = kPointsPerAreaLightMax; points > own; --points) {
     settings.points_per_area_light = points;

@@ -34,6 +34,17 @@ check budget_in_the_cache test "$(ls cache/of_its_own/pocketray/*.front | wc -l)
 expect budget_of_a_flight 0 '% of 6 frames within 110' \
   render seesaw "${small[@]}" --frames 0:5 --orbit 2 --budget-ms 1000000 -o flight.raw
 check budget_flight_moves_the_camera test "$(cat flight-000[0-5].raw | wc -c)" = $((6 * 32 * 24 * 2))
+# Goal: a front's reconstructions are planned for. Method: a small triangle under a lamp, whose stored light is at its corners;
+# planned with bicubic light, which needs no gradients, and rendered as the front has it.
+if [ ${#run[@]} -eq 1 ] && "${run[@]}" bake --help | grep -q -- --radiosity; then  # emulated, it takes minutes
+  printf 'newmtl lamp\nKd 0 0 0\nKe 3 3 3\nnewmtl grey\nKd .5 .5 .5\n' >lamp.mtl
+  printf '%s\n' 'mtllib lamp.mtl' 'v -5 3 -5' 'v 5 3 -5' 'v 5 3 5' 'v -5 3 5' 'v 0 0 0' 'v 0 0 .3' 'v .3 0 0' \
+    'usemtl lamp' 'f 1 2 3 4' 'usemtl grey' 'f 5 6 7' >lamp.obj
+  "${run[@]}" bake lamp.obj --radiosity -o lamp.pray >/dev/null 2>&1
+  printf 'pocketray-front 1\n%s flip=0.25 ns=1\n' "${one/bicubic/cubic}" >cubic.front
+  expect budget_plans_gradients 0 'reconstruction=cubic' \
+    render lamp.pray "${small[@]}" --budget-ms 1000000 --front cubic.front -o found.ppm
+fi
 expect budget_json 0 '"frames_within_110_percent": 1' \
   render cube "${small[@]}" --budget-ms 1000000 --front one.front --json - -o found.ppm
 expect budget_excludes_what_it_chooses 2 'excludes' render cube "${small[@]}" --budget-ms 40 --samples 4

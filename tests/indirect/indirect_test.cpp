@@ -35,11 +35,11 @@ TEST_CASE("indirect_methods_keep_their_promises") {
       scene.info.ambient = random_color(&rng) * 3.0f;
       Material material;
       material.diffuse = random_color(&rng);
-      std::vector<unsigned char> block(info.need(scene) + 2 * kArenaAlignment);
+      std::vector<unsigned char> block(info.need(scene, Quality()).keep + 2 * kArenaAlignment);
       Arena arena = make_arena("indirect", block.data(), block.size());
       const std::size_t before = arena.used;
-      const void* prepared = info.prepare(scene, &arena);
-      CHECK(arena.used - before <= info.need(scene));
+      const void* prepared = info.prepare(scene, Quality(), &arena, nullptr);
+      CHECK(arena.used - before <= info.need(scene, Quality()).keep);
       Vec3 point = random_color(&rng), normal = normalize(random_color(&rng));
       Vec3 radiance = info.radiance({scene, prepared, point, normal, material.diffuse});
       Vec3d exact = info.exact(scene, to_double(material.diffuse));
@@ -61,16 +61,16 @@ TEST_CASE("indirect_light_follows_the_plan") {
   Scene scene;
   scene.info.ambient = {0.25f, 0.5f, 1};
   const Vec3 point = {0, 0, 0}, normal = {0, 1, 0}, white = {1, 1, 1};
-  std::vector<std::uint8_t> memory(indirect_need(scene, kAllEffects) + kArenaAlignment);
+  std::vector<std::uint8_t> memory(indirect_need(scene, Quality(), kAllEffects).keep + kArenaAlignment);
   Arena keep = make_arena("indirect light", memory.data(), memory.size());
-  IndirectData data = prepare_indirect(scene, kAllEffects, &keep);
-  CHECK(keep.used <= indirect_need(scene, kAllEffects));
+  IndirectData data = prepare_indirect(scene, Quality(), kAllEffects, &keep, nullptr);
+  CHECK(keep.used <= indirect_need(scene, Quality(), kAllEffects).keep);
   Vec3 with = {0, 0, 0}, without = {0, 0, 0};
   IndirectList::add_radiance<bit(Effect::ambient)>(data.prepared, {scene, nullptr, point, normal, white}, &with);
   IndirectList::add_radiance<bit(Effect::texture)>(data.prepared, {scene, nullptr, point, normal, white}, &without);
   CHECK(with == scene.info.ambient);
   CHECK(is_zero(without));
-  CHECK(indirect_need(scene, 0) == 0);
+  CHECK(indirect_need(scene, Quality(), 0).keep == 0);
   CHECK(exact_indirect(scene, {1, 1, 1}, true) == to_double(scene.info.ambient));
   CHECK(is_zero(exact_indirect(scene, {1, 1, 1}, false)));
   Material material;
@@ -88,8 +88,8 @@ struct StoredIndirect {
   static constexpr IndirectReference kReference = IndirectReference::always;
   static constexpr const char *kPresent = "stored", *kAbsent = "nothing stored";
   static IndirectUse use(const Scene&) { return IndirectUse::automatic; }
-  static std::size_t need(const Scene&) { return arena_need<Vec3>(1); }
-  static const void* prepare(const Scene&, Arena* keep) {
+  static IndirectNeed need(const Scene&, const Quality&) { return {arena_need<Vec3>(1), 0}; }
+  static const void* prepare(const Scene&, const Quality&, Arena* keep, Arena*) {
     Array<Vec3> stored = arena_array<Vec3>(keep, 1);
     stored[0] = {1, 2, 3};
     return stored.data;
@@ -110,7 +110,7 @@ TEST_CASE("indirect_method_more_is_a_line_more") {
   alignas(kArenaAlignment) unsigned char block[4 * kArenaAlignment];
   Arena arena = make_arena("indirect", block, sizeof block);
   const void* prepared[Longer::kCount] = {};
-  for (int i = 0; i < Longer::kCount; ++i) prepared[i] = Longer::kInfos[i].prepare(scene, &arena);
+  for (int i = 0; i < Longer::kCount; ++i) prepared[i] = Longer::kInfos[i].prepare(scene, Quality(), &arena, nullptr);
   CHECK(Longer::kEffects == (bit(Effect::ambient) | bit(Effect::animation)));
   const Vec3 point = {0, 0, 0}, normal = {0, 1, 0}, white = {1, 1, 1};
   Vec3 both = {0, 0, 0}, ambient = both, stored = both;

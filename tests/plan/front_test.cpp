@@ -44,7 +44,7 @@ Candidate random_candidate(Rng* rng) {
   c.normals = static_cast<NormalMode>(next_u32(rng) % 2);
   c.indirect = static_cast<IndirectChoice>(next_u32(rng) % kIndirectChoiceCount);
   c.virtual_lights = 1 + next_u32(rng) % kVirtualLightMax;
-  c.reconstruction = static_cast<Reconstruction>(next_u32(rng) % 3);
+  c.reconstruction = static_cast<Reconstruction>(next_u32(rng) % 5);
   c.flip = next_u32(rng) % 4 ? next_float(rng) : kErrorUnknown;
   c.ns_per_pixel = kPriceNsMin + next_float(rng) * std::ldexp(1.0f, static_cast<int>(next_u32(rng) % 28));
   return c;

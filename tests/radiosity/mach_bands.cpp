@@ -59,7 +59,7 @@ std::vector<double> lateral_inhibition(const std::vector<double>& run) {
 
 }  // namespace
 
-BandsRig::BandsRig() : cube_(build_builtin("cube")) {
+BandsRig::BandsRig(bool total) : total_(total), cube_(build_builtin("cube")) {
   cube_->scene.info.ambient = {0, 0, 0};
   auto test = make_renderer(cube_->scene, settings_of(Reconstruction::bicubic));
   REQUIRE(prepare_frame(&test->renderer, 0).ok);
@@ -67,28 +67,31 @@ BandsRig::BandsRig() : cube_(build_builtin("cube")) {
     for (std::uint32_t x = 0; x < kBandsWidth; ++x) walls_.push_back(wall_at(test->renderer.frame.camera, x, y));
 }
 
-std::unique_ptr<TestRenderer> BandsRig::renderer(int cells, Reconstruction reconstruction) {
-  if (solved_cells_ != cells) {
+std::unique_ptr<TestRenderer> BandsRig::renderer(int cells, Reconstruction reconstruction, Pieces pieces) {
+  if (solved_cells_ != cells || solved_pieces_ != pieces) {
     Settings settings;
     settings.width = settings.height = 1, settings.indirect = IndirectChoice::none;
     auto test = make_renderer(cube_->scene, settings);
     REQUIRE(prepare_frame(&test->renderer, 0).ok);
     RadiosityOptions options;
-    options.threads = 2, options.stores_direct_light = true;
-    // Cells are as wide as patches, over this.
-    options.nodes_per_patch = cells * std::sqrt(24.0 / options.patch_count) / kWallSide;
+    options.threads = 2, options.stores_direct_light = total_;
+    options.stores_at_corners = pieces == Pieces::triangles;
+    // Cells are as wide as patches, over this. Longest edges of triangles are at most two cells: chosen so that these
+    // are between √2 and 2 of the sides wanted.
+    const double sides = pieces == Pieces::triangles ? 1.2 * cells : cells;
+    options.nodes_per_patch = sides * std::sqrt(24.0 / options.patch_count) / kWallSide;
     const Status status = solve_radiosity(
         test->renderer.frame, options, [](double) { return true; }, &solution_);
     REQUIRE(status.ok);
-    solved_cells_ = cells;
+    solved_cells_ = cells, solved_pieces_ = pieces;
   }
   Scene scene = cube_->scene;
   solution_.view(&scene);
   return make_renderer(scene, settings_of(reconstruction));
 }
 
-Picture BandsRig::render(int cells, Reconstruction reconstruction) {
-  auto test = renderer(cells, reconstruction);
+Picture BandsRig::render(int cells, Reconstruction reconstruction, Pieces pieces) {
+  auto test = renderer(cells, reconstruction, pieces);
   REQUIRE(has(test->renderer.effects.mask, Effect::radiosity));
   REQUIRE(render_frame(&test->renderer, 0).ok);
   const Array<Vec3>& image = test->renderer.image;

@@ -23,25 +23,33 @@ struct Bands {
   std::vector<double> response;  // less the reference's; one per pixel, rows and columns added; 0 where none counts
 };
 
+enum class Pieces { quads, triangles };
+
 class BandsRig {
  public:
-  BandsRig();
-  // The walls' picture, with `cells` patches along each side of a wall.
-  Picture render(int cells, Reconstruction reconstruction);
+  // `total`: direct light is stored, too, as [Bastos92] has it; otherwise pictures show indirect light alone.
+  explicit BandsRig(bool total = true);
+  // The walls' picture, with `cells` patches along each side of a wall; or with triangles, those halved at their
+  // longest sides until these are the diagonals of such patches, or the sides of these.
+  Picture render(int cells, Reconstruction reconstruction, Pieces pieces = Pieces::quads);
+  // Of the last solution, on all walls.
+  std::size_t value_count() const { return solution_.nodes.size() + solution_.values.size(); }
   Bands measure(const Picture& picture, const Picture& reference) const;
 
  private:
+  bool total_;
   std::unique_ptr<BuiltScene> cube_;
   std::vector<int> walls_;  // per pixel; −1: the lamp and its surroundings
   RadiositySolution solution_;
   int solved_cells_ = 0;
+  Pieces solved_pieces_ = Pieces::quads;
 
   struct Sums {
     double off, band, bend, most, count;
   };
   void measure_line(const Picture& picture, const Picture& reference, std::size_t at, std::size_t step,
                     std::size_t count, Sums* sums, std::vector<double>* response) const;
-  std::unique_ptr<TestRenderer> renderer(int cells, Reconstruction reconstruction);
+  std::unique_ptr<TestRenderer> renderer(int cells, Reconstruction reconstruction, Pieces pieces);
 };
 
 }  // namespace pocketray

@@ -21,3 +21,22 @@ TEST_CASE("mach_bands_of_hermite_patches_are_weaker") {
   CHECK((smooth.rmse < cross.rmse && cross.rmse < steps.rmse));
   CHECK(rig.measure(reference, reference).rms == 0);
 }
+
+// Goal: on the same walls by triangles, quadratic and cubic light shows weaker bands than linear light, and is nearer
+// to that of many patches; and so it is with two triangles for each patch of a wall. Method: as above.
+TEST_CASE("mach_bands_of_quadratics_and_cubics_are_weaker") {
+  BandsRig rig;
+  const Picture reference = rig.render(24, Reconstruction::bicubic);
+  for (Pieces pieces : {Pieces::quads, Pieces::triangles}) {
+    auto bands_of = [&](Reconstruction how) { return rig.measure(rig.render(2, how, pieces), reference); };
+    const Bands linear = bands_of(Reconstruction::bilinear), quadratic = bands_of(Reconstruction::quadratic),
+                cubic = bands_of(Reconstruction::cubic);
+    CHECK(rig.value_count() > 0);
+    for (const Bands* smooth : {&quadratic, &cubic}) {
+      MESSAGE("response ", linear.rms, " and ", smooth->rms, ", RMSE ", linear.rmse, " and ", smooth->rmse);
+      CHECK(smooth->second_difference < linear.second_difference / 4);
+      CHECK(smooth->rms < linear.rms);
+      CHECK(smooth->rmse < linear.rmse);
+    }
+  }
+}

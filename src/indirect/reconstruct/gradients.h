@@ -1,0 +1,42 @@
+// Gradients of the light that triangles store at their corners, for the elements of triangle.h.
+#pragma once
+#include "base/arena.h"
+#include "scene/scene.h"
+
+namespace pocketray {
+
+// Derivatives along the axes of the world, in the pose at time 0.
+struct RadiosityGradient {
+  Vec3 dx, dy, dz;
+  Vec3 along(const Vec3& way) const { return dx * way.x + dy * way.y + dz * way.z; }
+};
+
+// A part of a triangle, and where its corners lie.
+struct RadiosityPart {
+  RadiosityCorners corners;
+  Vec3 place[3];
+};
+
+// The halves of a triangle by a split: which of its corners A, B and C are (see RadiositySplit).
+struct HalvedCorners {
+  std::uint32_t a, b, c;
+};
+inline HalvedCorners halved_corners(std::uint32_t place) {
+  const std::uint32_t turn = turn_of(place);
+  return {turn, turn < 2 ? turn + 1 : 0, turn ? turn - 1 : 2};
+}
+
+// Bytes of the gradients, and those that set_gradients() needs while it works.
+std::size_t gradients_need(const Scene& scene);
+std::size_t gradients_scratch_need(const Scene& scene);
+
+// One for each of the scene's values; null if it has none.
+// The tangent plane at a corner is fitted to the variations along the edges that meet there, as [Bastos92] fig. 5 does
+// for patches: by least squares, weighted by the inverse cubes of their lengths, so that parabolas along lines of
+// unequal steps are reproduced. On the border of a surface, where edges leave to one side only, to twice the variation
+// less what the gradient at the other end says: the slope of the parabola, as on grids. What would lead, half an edge
+// away, out of the range of the values at the corner and its neighbours is taken from a gradient, along that edge
+// alone. Corners that do not share a value have gradients of their own.
+const RadiosityGradient* set_gradients(const Scene& scene, Arena* keep, Arena* scratch);
+
+}  // namespace pocketray
