@@ -13,8 +13,8 @@
 namespace pocketray {
 inline namespace POCKETRAY_ISA {
 
-// Offsets in bytes of the rows of BvhNode::bounds where a ray of these signs (bit 0: d.x < 0 …) enters and leaves boxes.
-// (Not every CPU scales an index when it loads four lanes.)
+// Offsets in bytes of the rows of BvhNode::bounds where a ray of these signs (bit 0: d.x < 0 …) enters and leaves
+// boxes. (Not every CPU scales an index when it loads four lanes.)
 struct SlabRows {
   std::size_t near[3], far[3];
 };

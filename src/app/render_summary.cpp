@@ -8,6 +8,8 @@
 namespace pocketray {
 namespace {
 
+constexpr float kEndedWeightTold = 0x1p-8f;  // less is no display level of light as bright as white
+
 void print_share(const Servers& servers, std::uint32_t width) {
   ServersTotals t = servers.backend->totals(servers);
   if (t.frames == 0) return;
@@ -56,6 +58,12 @@ void print_summary(const RenderSummary& s) {
     std::printf("  %s rays skipped, which could change a sample by at most %.2g of a display level in total\n",
                 grouped(counts.rays_left_out).c_str(),
                 static_cast<double>(counts.left_out_max * renderer.exposure) * 255 * 12.92);
+  if (counts.ended_weight_max >= kEndedWeightTold)
+    std::printf(
+        "  %s ended at depth %u, where the surroundings stand in for what they would see; the weightiest carries %.2g "
+        "%% of its light\n",
+        counted(counts.rays_ended, "ray").c_str(), renderer.settings.ray_depth,
+        100 * static_cast<double>(counts.ended_weight_max));
   if (s.servers) print_share(*s.servers, renderer.settings.width);
   if (s.budget) print_budget(*s.budget, s.frame_count == 1);
 }
@@ -77,6 +85,8 @@ Json to_json(const RenderSummary& s) {
           {"rays", rays},
           {"rays_left_out", counts.rays_left_out},
           {"left_out_radiance_max", counts.left_out_max},
+          {"rays_ended", counts.rays_ended},
+          {"ended_weight_max", counts.ended_weight_max},
           {"exposure", renderer.exposure},
           {"memory", memory_json(renderer.memory)},
           {"effects", effects_json(renderer.effects)},

@@ -33,6 +33,7 @@ Status check_setting(const SettingRow& row, double value, const char* name) {
 bool find_choice(const SettingRow& row, const char* name, std::size_t name_bytes, double* value) {
   CHECK(name != nullptr && value != nullptr);
   CHECK(row.field.kind == SettingKind::choice);
+  CHECK_GT(row.field.name_count, 1);
   for (int i = 0; i < row.field.name_count; ++i) {
     const char* choice = row.field.names[i];
     if (std::strlen(choice) != name_bytes || std::memcmp(choice, name, name_bytes) != 0) continue;

@@ -1,5 +1,7 @@
 #include "engine/renderer.h"
 
+#include <algorithm>
+
 #include "accel/accel_list.h"
 #include "base/check.h"
 #include "base/color.h"
@@ -288,7 +290,8 @@ Tracer total_counts(const Renderer& renderer) {
   Tracer total;
   for (const Tracer& t : renderer.tracers) {
     for (int kind = 0; kind < kRayKindCount; ++kind) total.rays[kind] += t.rays[kind];
-    total.rays_left_out += t.rays_left_out;
+    total.rays_left_out += t.rays_left_out, total.rays_ended += t.rays_ended;
+    total.ended_weight_max = std::max(total.ended_weight_max, t.ended_weight_max);
     total.stats.nodes += t.stats.nodes;
     total.stats.triangles += t.stats.triangles;
     if (t.left_out_max > total.left_out_max) total.left_out_max = t.left_out_max;

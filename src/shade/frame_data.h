@@ -263,7 +263,7 @@ struct TestedPoints {
 struct alignas(64) Tracer {
   const FrameData* frame = nullptr;
   std::uint64_t rays[kRayKindCount] = {};
-  std::uint64_t rays_left_out = 0;
+  std::uint64_t rays_left_out = 0, rays_ended = 0;
   TraceStats stats;
   const Surface* first_surface = nullptr;      // of the sample being shaded, or null: not known
   const TileShadows* tile_shadows = nullptr;   // of the current tile, or null
@@ -275,6 +275,7 @@ struct alignas(64) Tracer {
   LatticeWindow window;                        // empty: not planned
   Array<LightEntry> light_entries;             // scratch of source selection; empty: not planned
   float left_out_max = 0;                      // largest sum skipped of one sample so far
+  float ended_weight_max = 0;                  // largest throughput of a ray that ended by the maximum depth
   TestedPoints tested_points = {{0, 0, 0}, {0, 0, 0}, 0, ~0u, false, {}, {}, {}, {}};
 };
 

@@ -2,6 +2,7 @@
 // of the plan; an absent effect is not a branch, it does not exist.
 #include "shade/shade.h"
 
+#include <algorithm>
 #include <type_traits>
 
 #include "base/check.h"
@@ -69,8 +70,11 @@ template <EffectMask mask>
 Vec3 spawn(Tracer* tracer, RayKind kind, const Surface& s, const Vec3& direction, float side, const Path<mask>& path,
            const Vec3& weight) {
   const FrameData& frame = *tracer->frame;
-  if (path.depth >= frame.settings.ray_depth)
+  if (path.depth >= frame.settings.ray_depth) {
+    ++tracer->rays_ended;
+    tracer->ended_weight_max = std::max(tracer->ended_weight_max, max_component(path.weight * weight));
     return weight * (has_environment<mask>(frame) ? radiance_behind<mask>(frame, direction) : frame.beyond_depth);
+  }
   Path<mask> next = path;
   next.weight = path.weight * weight;
   next.depth = path.depth + 1;

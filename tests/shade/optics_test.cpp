@@ -150,6 +150,28 @@ TEST_CASE("hard_35_surroundings_complete_the_series") {
   }
 }
 
+// Goal: what ends by the maximum depth is counted, with the largest throughput. Method: closed form of
+// facing mirrors; none where the path leaves the scene.
+TEST_CASE("rays_that_end_by_depth_are_counted") {
+  for (float rho : {0.5f, 0.25f}) {
+    GeneratedScene s;
+    add_facing_mirrors(&s, rho);
+    for (std::uint32_t depth = 0; depth <= 6; ++depth) {
+      auto t = ray_renderer(&s, depth, 1);
+      Tracer tracer = make_tracer(t->renderer.frame);
+      for (std::uint64_t rays = 1; rays <= 3; ++rays) {
+        trace_ray(t->renderer, {0, 0, 0}, normalize(Vec3{0.03f, 0.02f, -1}), &tracer);
+        CHECK(tracer.rays_ended == rays);
+        CHECK(tracer.ended_weight_max == doctest::Approx(std::pow(double(rho), depth + 1)).epsilon(1e-6));
+      }
+      Tracer aside = make_tracer(t->renderer.frame);
+      trace_ray(t->renderer, {0, 0, 0}, {1, 0, 0}, &aside);
+      CHECK(aside.rays_ended == 0);
+      CHECK(aside.ended_weight_max == 0);
+    }
+  }
+}
+
 // Goal: a path cut off at weight w errs by at most w/(1 − ρ), as it states, and by less than half a display level.
 // Method: the series up to the maximum depth, for several exposures; rays are skipped, but none that matter.
 TEST_CASE("hard_35_cut_off_errs_by_the_rest_of_the_series_at_most") {

@@ -132,7 +132,8 @@ TEST_CASE("accuracy_measures_every_knob_of_the_scene") {
   for (const KnobFigures& k : sweep.knobs) names += k.name + " ";
   for (const std::string& note : sweep.notes) notes += note + "\n";
   std::string wanted =
-      "samples area-lights area-shadows area-irradiance normals indirect selective resolution arithmetic output ";
+      "samples area-lights area-shadows area-irradiance normals indirect selective moving-contrast "
+      "resolution arithmetic output ";
 #ifdef POCKETRAY_HAVE_NETWORK
   wanted += "near-lossless ";
 #endif

@@ -25,7 +25,7 @@ def main():
         parser.add_argument(name)
     parser.add_argument("scenes", nargs="*")
     parser.add_argument("--shared", default="../shared")
-    parser.add_argument("--size", default="160x120")
+    parser.add_argument("--size", default="320x240")
     parser.add_argument("--json")
     arguments = parser.parse_intermixed_args()
     machine = bench_device.MACHINES[arguments.cpu_class]
