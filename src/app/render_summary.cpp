@@ -60,8 +60,9 @@ void print_summary(const RenderSummary& s) {
                 static_cast<double>(counts.left_out_max * renderer.exposure) * 255 * 12.92);
   if (counts.ended_weight_max >= kEndedWeightTold)
     std::printf(
-        "  %s ended at depth %u, where the surroundings stand in for what they would see; the weightiest carries %.2g "
-        "%% of its light\n",
+        "  %s ended at depth %u; the surroundings stand in for what they would see, with a weight of up to %.2g %% of "
+        "a "
+        "sample\n",
         counted(counts.rays_ended, "ray").c_str(), renderer.settings.ray_depth,
         100 * static_cast<double>(counts.ended_weight_max));
   if (s.servers) print_share(*s.servers, renderer.settings.width);
