@@ -7,6 +7,7 @@
 
 #include "effect/setting_list.h"
 #include "scene/builtin_helpers.h"
+#include "support/effort.h"
 #include "support/generated_scene.h"
 
 using namespace pocketray;
@@ -101,7 +102,8 @@ Work work_of(const Renderer& renderer) {
 // and a pixel; packets, single rays, an orthographic camera.
 TEST_CASE("progressive_shows_final_pixels_in_every_picture") {
   auto generated = generate_scene(kAllFeatures, 31);
-  const std::uint32_t sizes[][2] = {{45, 34}, {64, 16}, {70, 61}, {131, 12}, {19, 1}, {1, 19}, {1, 1}};
+  const std::uint32_t large[] = {effort_side(70), effort_side(61)};
+  const std::uint32_t sizes[][2] = {{45, 34}, {64, 16}, {large[0], large[1]}, {131, 12}, {19, 1}, {1, 19}, {1, 1}};
   for (bool orthographic : {false, true}) {
     if (orthographic)
       for (Camera& camera : generated->cameras)
