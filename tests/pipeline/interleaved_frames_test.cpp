@@ -8,6 +8,7 @@
 #include "engine/prepare.h"
 #include "engine/recolor.h"
 #include "scene/builtin_helpers.h"
+#include "support/effort.h"
 #include "support/generated_scene.h"
 
 using namespace pocketray;
@@ -58,7 +59,7 @@ std::uint64_t camera_rays(const Renderer& renderer) {
 // Method: differential, bit for bit, over generated scenes, with selective rendering and without; then it stays exact.
 TEST_CASE("interleaved_frames_complete_what_rests") {
   for (float contrast : {0.0f, 0.25f})
-    for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    for (std::uint64_t seed = 1; seed <= static_cast<std::uint64_t>(effort(3)); ++seed) {
       auto generated = generate_scene(kAllFeatures, seed);
       const Picture exact = render_picture(generated->scene, settings_of(Resolution::full, contrast), 0.4);
       const Picture half = render_picture(generated->scene, settings_of(Resolution::checkerboard, contrast), 0.4);
