@@ -216,7 +216,7 @@ mach-bands: setup-tests configure
 	  seen() { for name; do pictures="$$pictures -label $$name $$name.ppm"; done; }; \
 	  bands() { for name; do pictures="$$pictures -label lateral-inhibition $$name-bands.ppm"; done; }; \
 	  seen $$quads; bands $$quads; seen $$triangles reference; bands $$triangles; \
-	  montage -font DejaVu-Sans -pointsize 13 -depth 8 $$pictures -tile 5x -geometry 240x180+3+3 mach-bands.png && \
+	  montage -font DejaVu-Sans -pointsize 13 -depth 8 $$pictures -tile 5x -geometry 160x120+3+3 mach-bands.png && \
 	  echo "the picture: $(BUILD)/mach-bands/mach-bands.png"; \
 	else echo "pictures: $(BUILD)/mach-bands/*.ppm (ImageMagick puts them side by side)"; fi
 

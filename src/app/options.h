@@ -17,9 +17,9 @@ Option add_environment_option(Command command, std::string* name);
 // --background, --environment, --light, --fov and --focus. Call after add_scene_options(), or add_view_options().
 // `own_look`, if not null, is an option that the command has and that works with the scene's own look only.
 void add_look_options(Command command, CommonOptions* options, const char* own_look = nullptr);
-// --coherence, initially auto, and --coherence-table.
 // The screen as it is seen, for --moving-contrast.
 void add_vision_option(Command command, CommonOptions* options);
+// --coherence, initially auto, and --coherence-table.
 void add_coherence_options(Command command, CommonOptions* options, const char* usual = "auto");
 // --budget-ms and --front, which exclude the settings they choose. Call after add_scene_options().
 void add_budget_options(Command command, BudgetOptions* options);

@@ -61,8 +61,7 @@ void print_summary(const RenderSummary& s) {
   if (counts.ended_weight_max >= kEndedWeightTold)
     std::printf(
         "  %s ended at depth %u; the surroundings stand in for what they would see, with a weight of up to %.2g %% of "
-        "a "
-        "sample\n",
+        "a sample\n",
         counted(counts.rays_ended, "ray").c_str(), renderer.settings.ray_depth,
         100 * static_cast<double>(counts.ended_weight_max));
   if (s.servers) print_share(*s.servers, renderer.settings.width);
