@@ -15,6 +15,7 @@
 #include "platform/instructions.h"
 #include "reference/rendered.h"
 #include "scene/baked.h"
+#include "session/camera_control.h"
 #include "session/interrupt.h"
 #include "session/scene_identity.h"
 #include "sweep/sweep.h"
@@ -130,18 +131,12 @@ bool interleaves(const Configuration& configuration) {
 // Of a frame that builds on the one before, the latter: a frame's time earlier, by a camera a degree aside, which turns
 // once in 12 s at 30 frames a second. At rest, errors and prices would be those of no frame that anybody waits for.
 Status render_frame_before(Renderer* renderer, double seconds) {
-  constexpr double kAsideDegrees = 1;
+  constexpr float kAsideDegrees = 1;
   const Camera camera = renderer->camera;
   const bool was_overridden = renderer->camera_overridden;
-  const auto sine = static_cast<float>(det_sin(radians(kAsideDegrees)));
-  const auto cosine = static_cast<float>(det_cos(radians(kAsideDegrees)));
-  const Vec3 forward = camera.target - camera.eye, up = normalize(camera.up), side = cross(forward, up);
-  const Vec3 upright = up * dot(forward, up);
-  Camera aside = camera;
-  aside.node = kNone;
-  aside.eye = camera.target - upright - (forward - upright) * cosine - side * sine;
+  const CameraControl path = make_camera_control(camera, renderer->accel.bounds);
   forget_picture(renderer);
-  RETURN_IF_ERROR(set_camera(renderer, aside));
+  RETURN_IF_ERROR(set_camera(renderer, orbited_camera(path, kAsideDegrees)));
   const double earlier = seconds - 1 / static_cast<double>(renderer->scene.info.frames_per_second);
   RETURN_IF_ERROR(render_frame(renderer, std::max(earlier, 0.0), Aov::none, &interrupted));
   renderer->camera = camera, renderer->camera_overridden = was_overridden;
