@@ -52,8 +52,9 @@ std::string numbered_path(const std::string& path, std::uint32_t number) {
 Status check_shareable(const RenderOptions& o, const RenderRequest& request) {
   if (o.servers.addresses.empty()) return success();
   if (request.aov != Aov::none) return failure("--server sends only colours: drop --server or --aov");
-  if (has_suffix(request.kind.c_str(), ".pfm"))
-    return failure("--server sends display levels but .pfm stores radiance: drop --server, or write .png or .ppm");
+  if (stores_values(request.kind))
+    return failure(
+        "--server sends display levels but .pfm and .exr store radiance: drop --server, or write .png or .ppm");
   return success();
 }
 
@@ -293,14 +294,14 @@ void add_render_options(Command command, RenderOptions* o) {
   add_coherence_options(command, &o->common);
   add_vision_option(command, &o->common);
   command
-      .add_option(
-          "-o,--output", o->output,
-          "picture to write: .png, .jpg, .ppm, .pfm (linear radiance) or .raw (framebuffer bytes). A sequence gives "
-          "numbered pictures, out-0000.png …, or one animation: .gif, .apng (all colours) or .mp4 (by ffmpeg). "
-          "-: standard output")
+      .add_option("-o,--output", o->output,
+                  "picture to write: .png, .jpg, .ppm, .pfm or .exr (linear radiance) or .raw (framebuffer bytes). A "
+                  "sequence gives "
+                  "numbered pictures, out-0000.png …, or one animation: .gif, .apng (all colours) or .mp4 (by ffmpeg). "
+                  "-: standard output")
       .capture_default_str();
-  command.add_option("--format", o->format, "format for -o -: png, jpg, ppm, pfm, raw, gif, apng or mp4")
-      .one_of({"png", "jpg", "ppm", "pfm", "raw", "gif", "apng", "mp4"})
+  command.add_option("--format", o->format, "format for -o -: png, jpg, ppm, pfm, exr, raw, gif, apng or mp4")
+      .one_of({"png", "jpg", "ppm", "pfm", "exr", "raw", "gif", "apng", "mp4"})
       .default_str("png");
   Option frames =
       command.add_option("--frames", o->frames,
@@ -326,7 +327,8 @@ void add_render_options(Command command, RenderOptions* o) {
                      "X,Y,WxH: trace and write only these pixels of the picture, counted from the top left");
   command
       .add_option("--aov", o->aov,
-                  "write depth, normal, triangle or cost in false colours instead of the picture; .pfm has the values")
+                  "write depth, normal, triangle or cost in false colours instead of the picture; .pfm and .exr have "
+                  "the values")
       .capture_default_str();
   command.add_flag("--no-legend", o->no_legend, "leave out the legend at the bottom left of --aov");
   command.add_option("--rotate", o->rotation, "rotate .raw pictures clockwise: 0, 90, 180 or 270")

@@ -64,10 +64,10 @@ AovPicture color_aov(Aov aov, const PixelBox& box, Renderer* renderer) {
   }
   if (aov == Aov::triangle) {
     picture.legend = make_text_legend("triangle: a colour each", width);
-    std::snprintf(picture.told, sizeof picture.told, "  triangle: a colour each; .pfm has their numbers, plus 1");
+    std::snprintf(picture.told, sizeof picture.told, "  triangle: a colour each; .pfm and .exr have their numbers, plus 1");
   }
   if (aov == Aov::depth)
-    std::snprintf(picture.told, sizeof picture.told, "  depth: white is %s scene units away; .pfm has the distances",
+    std::snprintf(picture.told, sizeof picture.told, "  depth: white is %s scene units away; .pfm and .exr have the distances",
                   high);
   return picture;
 }

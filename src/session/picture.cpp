@@ -7,19 +7,20 @@
 #include "present/image_file.h"
 #include "present/png_file.h"
 #include "present/repack.h"
+#include "session/exr.h"
 #include "session/jpeg.h"
 #include "session/output.h"
 
 namespace pocketray {
 namespace {
 
-enum class Kind { png, ppm, pfm, raw, jpeg, unknown };
+enum class Kind { png, ppm, pfm, exr, raw, jpeg, unknown };
 
 Kind kind_of(const char* path) {
   constexpr struct {
     const char* suffix;
     Kind kind;
-  } kSuffixes[] = {{".png", Kind::png}, {".ppm", Kind::ppm},  {".pfm", Kind::pfm},
+  } kSuffixes[] = {{".png", Kind::png}, {".ppm", Kind::ppm},  {".pfm", Kind::pfm},  {".exr", Kind::exr},
                    {".raw", Kind::raw}, {".jpg", Kind::jpeg}, {".jpeg", Kind::jpeg}};
   for (const auto& row : kSuffixes)
     if (has_suffix(path, row.suffix) || std::strcmp(path, row.suffix) == 0) return row.kind;
@@ -64,12 +65,14 @@ Status encode(Kind kind, const PictureOptions& o, Renderer* renderer, const Byte
   CHECK(kind != Kind::unknown);  // check_picture_path() has been asked
   int width = static_cast<int>(renderer->settings.width), height = static_cast<int>(renderer->settings.height);
   const PixelBox box = box_to_write(o, renderer->settings);
-  if (kind == Kind::pfm) {
+  if (kind == Kind::pfm || kind == Kind::exr) {
     const Vec3* radiance = radiance_of(o, *renderer);
     CHECK(radiance != nullptr);
-    const std::size_t first =
-        static_cast<std::size_t>(box.top) * renderer->settings.width + static_cast<std::size_t>(box.left);
-    encode_pfm(&radiance[first].x, 3, box.width, box.height, sink, 3 * std::size_t(renderer->settings.width));
+    const std::size_t line_values = 3 * std::size_t(renderer->settings.width);
+    const float* first =
+        &radiance[static_cast<std::size_t>(box.top) * renderer->settings.width + static_cast<std::size_t>(box.left)].x;
+    if (kind == Kind::exr) return encode_exr(first, box.width, box.height, line_values, sink);
+    encode_pfm(first, 3, box.width, box.height, sink, line_values);
     return success();
   }
   bool raw = kind == Kind::raw,
@@ -110,13 +113,22 @@ Status check_picture_path(const std::string& path) {
   const Kind kind = kind_of(path.c_str());
   if (kind == Kind::unknown)
     return failure(
-        "-o is '%.200s': the name must end in .png, %s.ppm, .pfm or .raw, or .gif, .apng or .mp4 for animations",
-        path.c_str(), has_jpeg() ? ".jpg, " : "");
+        "-o is '%.200s': the name must end in .png, %s.ppm, .pfm, %s.raw, or .gif, .apng or .mp4 for animations",
+        path.c_str(), has_jpeg() ? ".jpg, " : "", has_exr() ? ".exr or " : "or ");
   if (kind == Kind::jpeg && !has_jpeg())
     return failure(
         "-o is '%.200s', but this build has no JPEG support: write .png, or build with stb and the importers",
         path.c_str());
+  if (kind == Kind::exr && !has_exr())
+    return failure(
+        "-o is '%.200s', but this build has no OpenEXR support: write .pfm, or build with OpenEXR 3.1 or later",
+        path.c_str());
   return success();
+}
+
+bool stores_values(const std::string& path) {
+  const Kind kind = kind_of(path.c_str());
+  return kind == Kind::pfm || kind == Kind::exr;
 }
 
 Status write_picture(const char* path, const PictureOptions& options, Renderer* renderer) {

@@ -1,4 +1,5 @@
-// A finished frame as a file: PNG, PPM (displayed levels), PFM (linear radiance) or the bytes a framebuffer would hold.
+// A finished frame as a file: PNG, PPM (displayed levels), PFM or OpenEXR (linear radiance) or the bytes a framebuffer
+// would hold.
 #pragma once
 #include <string>
 
@@ -15,9 +16,9 @@ struct PictureOptions {
   Rotation rotation = Rotation::none;
   bool dither = false;
   PixelBox crop;                   // the pixels to write, unless they are rotated; width 0: all
-  const Legend* legend = nullptr;  // drawn at the bottom left, except into .pfm; null or empty: none
+  const Legend* legend = nullptr;  // drawn at the bottom left, except where stores_values(); null or empty: none
   const Vec3* radiance = nullptr;  // null: renderer->image
-  // Rows already packed, packed_line_bytes apart, for all kinds but .pfm. Null: packs renderer->image.
+  // Rows already packed, packed_line_bytes apart, unless stores_values(). Null: packs renderer->image.
   const std::uint8_t* packed = nullptr;
   int packed_line_bytes = 0;
   PixelFormat packed_format;
@@ -31,6 +32,8 @@ std::size_t picture_bytes(const Settings& settings);
 
 // Fails unless the path ends in .png, .ppm, .pfm, .raw or, if this build has JPEG, .jpg or .jpeg, or is such an ending.
 Status check_picture_path(const std::string& path);
+// Whether pictures of that name have linear radiance, or values, instead of displayed levels.
+bool stores_values(const std::string& path);
 
 // The picture in the options as rows of R, G and B, without padding. `rgb` has room for the whole picture, even if it
 // is cropped.

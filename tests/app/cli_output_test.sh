@@ -59,6 +59,29 @@ if "${run[@]}" render cube --size 8x6 -o file.jpg >/dev/null 2>&1; then
   check jpeg_to_stdout cmp -s file.jpg piped.jpg
   check jpeg_magic test "$(head -c 3 file.jpg | od -An -tx1 | tr -d ' \n')" = ffd8ff
 fi
+# OpenEXR: the floats of .pfm, bit for bit, as another program decodes them. The first three lines of .pfm are text, rows go up.
+if ! "${run[@]}" render cube --size 37x29 -o file.exr >told 2>&1; then
+  check exr_is_refused_plainly grep -q 'no OpenEXR support: write .pfm' told
+elif command -v ffmpeg >/dev/null; then
+  "${run[@]}" render cube --size 37x29 -o - --format exr 2>/dev/null >piped.exr
+  check exr_to_stdout cmp -s file.exr piped.exr
+  for kind in "" "--crop 3,5,21x18" "--aov depth"; do
+    "${run[@]}" render cube --size 37x29 $kind -o file.pfm >/dev/null
+    "${run[@]}" render cube --size 37x29 $kind -o file.exr >/dev/null
+    ffmpeg -v error -y -i file.exr -pix_fmt gbrpf32le -f rawvideo planes.raw </dev/null
+    check "exr_has_every_bit$kind" python3 -c '
+import struct
+head, size, scale, rows = open("file.pfm", "rb").read().split(b"\n", 3)
+width, height = map(int, size.split())
+pixels = list(struct.iter_unpack("<3I", rows))
+planes = [i[0] for i in struct.iter_unpack("<I", open("planes.raw", "rb").read())]
+assert len(planes) == 3 * len(pixels) and len(set(pixels)) > 9
+for y in range(height):
+    for x in range(width):
+        r, g, b = pixels[(height - 1 - y) * width + x]
+        assert [planes[(c * height + y) * width + x] for c in range(3)] == [g, b, r], (x, y)'
+  done
+fi
 "${run[@]}" render cube --size 8x6 -o - 2>/dev/null >piped && check png_is_usual cmp -s piped file.png
 "${run[@]}" render cube --size 8x6 -o file.gif --turntable 3 >/dev/null
 "${run[@]}" render cube --size 8x6 -o - --turntable 3 --format gif 2>/dev/null >piped && check gif_to_stdout cmp -s piped file.gif
