@@ -14,7 +14,7 @@ inline constexpr const char* kTextureFilterNames[] = {"scene", "nearest", "bilin
 inline constexpr const char* kAreaShadowsNames[] = {"adaptive", "every"};
 inline constexpr const char* kAreaIrradianceNames[] = {"points", "analytic"};
 inline constexpr const char* kNormalNames[] = {"scene", "flat"};
-inline constexpr const char* kResolutionNames[] = {"full", "checkerboard", "half", "interleaved"};
+inline constexpr const char* kResolutionNames[] = {"full", "checkerboard", "half", "interleaved", "two-thirds"};
 inline constexpr const char* kMovingContrastNames[] = {"as-resting", "as-seen"};
 inline constexpr const char* kReconstructionNames[] = {"constant", "bilinear", "bicubic", "quadratic", "cubic"};
 
@@ -224,8 +224,8 @@ inline constexpr SettingRow kSettingList[] = {
      kAlways,
      false,
      double(Resolution::full),
-     {double(Resolution::half), double(Resolution::checkerboard), double(Resolution::interleaved),
-      double(Resolution::full)},
+     {double(Resolution::half), double(Resolution::checkerboard), double(Resolution::two_thirds),
+      double(Resolution::interleaved), double(Resolution::full)},
      nullptr,
      ""},
     {"light-tolerance",

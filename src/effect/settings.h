@@ -28,7 +28,7 @@ enum class AreaShadows : std::uint8_t { adaptive, every };
 enum class AreaIrradiance : std::uint8_t { points, analytic };
 
 // The pixels that are traced: all, half of them, a quarter, or each half in turn; see shade/lattice.h.
-enum class Resolution : std::uint8_t { full, checkerboard, half, interleaved };
+enum class Resolution : std::uint8_t { full, checkerboard, half, interleaved, two_thirds };
 
 // Contrasts in what moves across the screen, under selective rendering: as in what rests, or as the eye sees them.
 enum class MovingContrast : std::uint8_t { as_resting, as_seen };

@@ -179,7 +179,7 @@ void decide_environment_shadow(const Scene& scene, const Settings& settings, con
 
 EffectPlan plan_effects(const Scene& scene, const Settings& settings) {
   CHECK(within(Quantity::contrast, settings.selective_contrast));
-  CHECK(settings.resolution <= Resolution::interleaved);
+  CHECK(settings.resolution <= Resolution::two_thirds);
   Census c = take_census(scene, settings);
   EffectPlan plan;
   PlanWriter w = {&plan, c.materials};
@@ -271,6 +271,7 @@ EffectPlan plan_effects(const Scene& scene, const Settings& settings) {
           full                                             ? "all"
           : settings.resolution == Resolution::half        ? "a quarter"
           : settings.resolution == Resolution::interleaved ? "each half in turn"
+          : settings.resolution == Resolution::two_thirds  ? "two thirds"
                                                            : "half");
   if (settings.light_tolerance == 0)
     w.set(Effect::source_selection, false, "every light tested for shadows");

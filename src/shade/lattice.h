@@ -1,9 +1,10 @@
 // Undersampling: the pixels of a lattice are traced, the others reconstructed along the edges between them.
 //
-// A checkerboard is half of the pixels; every other pixel of every other row is a quarter. A missing pixel of a
-// checkerboard lies between two pairs of opposite neighbours and takes the mean of the pair that differs less. A
-// quarter is first completed to a checkerboard, by the diagonals, as in [Zhou et al. 2012, "Image Zooming Using
-// Directional Cubic Convolution Interpolation", sec. 2] with means for cubics. At the picture's edges it is mirrored.
+// A checkerboard is half of the pixels; every other pixel of every other row is a quarter; two thirds are all but every
+// third diagonal. A missing pixel of a checkerboard or of two thirds lies between two pairs of opposite neighbours and
+// takes the mean of the pair that differs less. A quarter is first completed to a checkerboard, by the diagonals, as in
+// [Zhou et al. 2012, "Image Zooming Using Directional Cubic Convolution Interpolation", sec. 2] with means for cubics.
+// At the picture's edges it is mirrored.
 //
 // An interleaved picture traces one half of the checkerboard and the next picture the other half; what is missing comes
 // from the last picture where that is still right; see carried.h.
@@ -20,8 +21,18 @@ constexpr std::uint32_t kWindowRows = kRowsAbove + kTileSide + kRowsBelow;
 
 // `parity` is that of an interleaved checkerboard, LastPicture::parity.
 constexpr bool on_lattice(Resolution resolution, std::uint32_t column, std::uint32_t row, std::uint32_t parity = 0) {
-  return resolution == Resolution::full ||
-         (resolution == Resolution::half ? (column | row) % 2 == 0 : (column + row + parity) % 2 == 0);
+  switch (resolution) {
+    case Resolution::full:
+      return true;
+    case Resolution::half:
+      return (column | row) % 2 == 0;
+    case Resolution::two_thirds:
+      return (column + row) % 3 != 2;
+    case Resolution::checkerboard:
+    case Resolution::interleaved:
+      break;
+  }
+  return (column + row + parity) % 2 == 0;
 }
 
 constexpr std::uint32_t window_pixel_count(const Settings& settings) { return kWindowRows * settings.width; }
