@@ -233,7 +233,7 @@ void add_bench_command(Command program, int* exit_status) {
       "--front", *front,
       "instead measure the settings that --budget-ms chooses from, and save their prices in FILE or the cache");
   priced.expected(0, 1);
-  add_look_options(command, options.get(), "--front");
+  add_look_options(command, options.get(), {"--front"});
   priced.excludes(command.get_option("--coherence"));
   for (const char* chosen : {"--samples", "--depth", "--area-lights", "--cut-off", "--texture-filter", "--normals"})
     priced.excludes(command.get_option(chosen));

@@ -133,7 +133,7 @@ Option add_environment_option(Command command, std::string* name) {
       "clear sky with a sun 0 … 90 degrees high (45) and haze 2 … 10 (3)");
 }
 
-void add_look_options(Command command, CommonOptions* o, const char* own_look) {
+void add_look_options(Command command, CommonOptions* o, std::initializer_list<const char*> own_look) {
   Option background =
       command
           .add_option("--background", o->background,
@@ -148,8 +148,8 @@ void add_look_options(Command command, CommonOptions* o, const char* own_look) {
                       "sun (one from high above) or none (ambient alone)")
           .one_of({"key", "sun", "none"})
           .capture_default_str();
-  if (own_look)
-    for (Option option : {background, environment, light}) option.excludes(command.get_option(own_look));
+  for (const char* other : own_look)
+    for (Option option : {background, environment, light}) option.excludes(command.get_option(other));
   command
       .add_option("--fov", o->fov,
                   "vertical field of view in degrees, 0.001 … 179, of the scene's cameras; the automatic camera still "
@@ -198,10 +198,17 @@ void add_budget_options(Command command, BudgetOptions* o) {
     double ms = std::strtod(text.c_str(), nullptr);
     return ms >= kBudgetMsMin && ms <= kBudgetMsMax ? "" : "must lie in 0.001 … 10000000 milliseconds";
   });
-  for (const SettingRow& row : kSettingList) budget.excludes(command.get_option(std::string("--") + row.name));
+  Option flip = command.add_option("--flip-max", o->flip_max,
+                                   "mean ꟻLIP that the picture may have, as `pocketray accuracy` measured it for the "
+                                   "scene: chooses the fastest such settings, or the best of them within --budget-ms");
+  flip.check([](const std::string& text) {
+    const double flip_max = std::strtod(text.c_str(), nullptr);
+    return flip_max > 0 && flip_max <= 1 ? "" : "must be above 0 and at most 1";
+  });
+  for (const SettingRow& row : kSettingList)
+    for (Option* option : {&budget, &flip}) option->excludes(command.get_option(std::string("--") + row.name));
   command.add_option("--front", o->front, "file of settings to choose from")
-      .default_str("the scene's file in the cache")
-      .needs(budget);
+      .default_str("the scene's file in the cache");
 }
 
 void add_servers_options(Command command, ServersOptions* o) {

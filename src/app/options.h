@@ -1,5 +1,7 @@
 // Options shared by several commands, with their help.
 #pragma once
+#include <initializer_list>
+
 #include "app/command_line.h"
 #include "budget/budget.h"
 #include "session/open_scene.h"
@@ -15,13 +17,13 @@ void add_view_options(Command command, CommonOptions* options);
 // --environment, excluding no other option.
 Option add_environment_option(Command command, std::string* name);
 // --background, --environment, --light, --fov and --focus. Call after add_scene_options(), or add_view_options().
-// `own_look`, if not null, is an option that the command has and that works with the scene's own look only.
-void add_look_options(Command command, CommonOptions* options, const char* own_look = nullptr);
+// `own_look`: options that the command has and that work with the scene's own look only.
+void add_look_options(Command command, CommonOptions* options, std::initializer_list<const char*> own_look = {});
 // The screen as it is seen, for --moving-contrast.
 void add_vision_option(Command command, CommonOptions* options);
 // --coherence, initially auto, and --coherence-table.
 void add_coherence_options(Command command, CommonOptions* options, const char* usual = "auto");
-// --budget-ms and --front, which exclude the settings they choose. Call after add_scene_options().
+// --budget-ms, --flip-max and --front, which exclude the settings they choose. Call after add_scene_options().
 void add_budget_options(Command command, BudgetOptions* options);
 // --json, --isa, --server and --key, each a single option. The variable must outlive the parsing of the command line.
 Option add_json_option(Command command, std::string* path);

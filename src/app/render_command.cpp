@@ -47,7 +47,7 @@ Status start_servers_for(const RenderOptions& o, Renderer* renderer, RenderJob* 
 std::size_t output_bytes(const RenderOptions& o, const RenderRequest& asked, const Settings& settings) {
   std::size_t bytes = size_sum(picture_bytes(settings), animation_bytes(asked.animation, settings));
   bytes = size_sum(bytes, arena_need<Span>(static_cast<std::size_t>(asked.picture.crop.height)));
-  if (o.budget.ms == 0) return bytes;
+  if (!chooses_settings(o.budget)) return bytes;
   return size_sum(bytes, arena_need(std::uint64_t(settings.width) * settings.height * 4));
 }
 
@@ -55,7 +55,7 @@ std::size_t output_bytes(const RenderOptions& o, const RenderRequest& asked, con
 Status open_budgeted(const RenderOptions& o, const OutputBytes& bytes, RenderJob* job, OpenScene* opened,
                      Budget* budget) {
   OpenFront front;
-  RETURN_IF_ERROR(open_scene_with_front(o.common, {o.budget.front}, bytes, opened, &front));
+  RETURN_IF_ERROR(open_scene_with_front(o.common, front_source(o.budget), bytes, opened, &front));
   print_notes(front);
   Renderer* renderer = &opened->renderer;
   start_budget(o.budget, front, *renderer, job->asked.sequence.last - job->asked.sequence.first + 12, budget);
@@ -133,8 +133,8 @@ Status open_job(const RenderOptions& given, Opened* o) {
   o->closing.reset(job->servers);
   RETURN_IF_ERROR(status);
   auto bytes = [job](const Settings& settings) { return output_bytes(job->options, job->asked, settings); };
-  RETURN_IF_ERROR(options->budget.ms > 0 ? open_budgeted(*options, bytes, job, &o->scene, &o->budget)
-                                         : open_scene_with(job->servers, options->common, bytes, &o->scene));
+  RETURN_IF_ERROR(chooses_settings(options->budget) ? open_budgeted(*options, bytes, job, &o->scene, &o->budget)
+                                                    : open_scene_with(job->servers, options->common, bytes, &o->scene));
   RETURN_IF_ERROR(check_pictures(*job, o->scene.source));
   Renderer* renderer = &o->scene.renderer;
   if (moves_camera(*options)) job->camera = make_camera_control(renderer->camera, subject_of(o->scene));

@@ -62,10 +62,12 @@ Status check_budget_and_orbit(const RenderOptions& o, Aov aov) {
   if (!(std::fabs(o.orbit_degrees) <= 360)) return failure("--orbit must lie in -360 … 360");
   if (o.orbit_degrees != 0 && o.frames.empty())
     return failure("--orbit turns the camera from frame to frame: add --frames 0:359, or use --turntable 360");
-  if (o.budget.ms == 0) return success();
+  RETURN_IF_ERROR(check_budget_options(o.budget));
+  if (!chooses_settings(o.budget)) return success();
+  const char* option = option_that_chooses(o.budget);
   if (!o.servers.addresses.empty())
-    return failure("--budget-ms changes settings per frame and servers cannot: drop --budget-ms or --server");
-  if (aov != Aov::none) return failure("--budget-ms renders only colours: drop --budget-ms or --aov");
+    return failure("%s changes settings per frame and servers cannot: drop %s or --server", option, option);
+  if (aov != Aov::none) return failure("%s renders only colours: drop %s or --aov", option, option);
   return success();
 }
 
@@ -128,7 +130,8 @@ Status read_crop(const RenderOptions& o, RenderRequest* request) {
     return failure("--crop is '%.100s': write X,Y,WxH, as 0,0,%ux%u, within the picture's %ux%u pixels", o.crop.c_str(),
                    (width + 1) / 2, (height + 1) / 2, width, height);
   if (!o.servers.addresses.empty()) return failure("--server sends whole rows: drop --server or --crop");
-  if (o.budget.ms > 0) return failure("--budget-ms measures whole frames: drop --budget-ms or --crop");
+  if (const char* option = option_that_chooses(o.budget); chooses_settings(o.budget))
+    return failure("%s measures whole frames: drop %s or --crop", option, option);
   if (o.rotation != 0) return failure("--crop cannot be rotated: drop --rotate or --crop");
   request->picture.crop = box;
   return success();
@@ -156,9 +159,9 @@ Status check_resume(const RenderOptions& o, const RenderRequest& request) {
   if (keeps_journal(o, request))
     return check_outputs(inputs_of(o), {{"-o", journal_path(o.output)}, {"--json", o.common.json}});
   if (!o.resume) return success();
-  if (!o.servers.addresses.empty() || o.budget.ms > 0)
-    return failure(
-        "--resume cannot tell that pictures match, with servers or a budget: drop it, or --server and --budget-ms");
+  if (!o.servers.addresses.empty() || chooses_settings(o.budget))
+    return failure("--resume cannot tell that pictures match, with servers or a budget: drop it, or --server and %s",
+                   option_that_chooses(o.budget));
   return failure("--resume is for sequences of numbered pictures: add --frames 0:99 or --turntable 36, and write .png");
 }
 
@@ -170,8 +173,9 @@ Status check_team(const RenderOptions& o, const RenderRequest& request) {
                    o.output.c_str());
   if (!request.sequence.given)
     return failure("one picture is rendered by one program: add --frames 0:99, or start it without mpirun");
-  if (!o.servers.addresses.empty() || o.budget.ms > 0)
-    return failure("ranks share frames by themselves: drop --server and --budget-ms, or start without mpirun");
+  if (!o.servers.addresses.empty() || chooses_settings(o.budget))
+    return failure("ranks share frames by themselves: drop --server and %s, or start without mpirun",
+                   option_that_chooses(o.budget));
   if (builds_on_last(o))
     return failure(
         "ranks render frames alone, and those of --resolution interleaved and --moving-contrast as-seen build on the "
@@ -195,7 +199,7 @@ Status check_frame_rate(const RenderOptions& o, const RenderRequest& request) {
 
 bool keeps_journal(const RenderOptions& o, const RenderRequest& request) {
   return request.sequence.given && request.animation == AnimationKind::none && o.servers.addresses.empty() &&
-         o.budget.ms == 0 && !builds_on_last(o);
+         !chooses_settings(o.budget) && !builds_on_last(o);
 }
 
 std::string identity_of(const RenderOptions& o, const RenderRequest& request, const SceneSource& source,
@@ -290,7 +294,7 @@ void add_render_options(Command command, RenderOptions* o) {
   add_scene_options(command, &o->common);
   if (o->parts.servers) add_servers_options(command, &o->servers);
   add_budget_options(command, &o->budget);
-  add_look_options(command, &o->common, "--budget-ms");
+  add_look_options(command, &o->common, {"--budget-ms", "--flip-max"});
   add_coherence_options(command, &o->common);
   add_vision_option(command, &o->common);
   command

@@ -29,8 +29,9 @@ struct Loading {
 
   Loading(const CommonOptions& options, const BudgetOptions& budget, Viewer* viewer)
       : servers(viewer->servers), thread([this, &options, &budget, viewer] {
-          status = budget.ms > 0 ? open_scene_with_front(options, {budget.front}, viewer_bytes, opened.get(), &front)
-                                 : open_scene_with(servers, options, viewer_bytes, opened.get());
+          status = chooses_settings(budget)
+                       ? open_scene_with_front(options, front_source(budget), viewer_bytes, opened.get(), &front)
+                       : open_scene_with(servers, options, viewer_bytes, opened.get());
           if (status.ok && servers)
             status = servers->backend->start(servers, &opened->renderer, viewer->format.bits_per_pixel == 16,
                                              viewer->options.dither);
@@ -67,8 +68,8 @@ Status show(const ViewCommand& o, const Loading& loading, Viewer* viewer, bool* 
   print_notes(*loading.opened);
   print_notes(loading.front);
   Budget budget;
-  if (o.budget.ms > 0) start_budget(o.budget, loading.front, *renderer, 4096, &budget);
-  viewer->budget = o.budget.ms > 0 ? &budget : nullptr;
+  if (chooses_settings(o.budget)) start_budget(o.budget, loading.front, *renderer, 4096, &budget);
+  viewer->budget = chooses_settings(o.budget) ? &budget : nullptr;
   viewer->focus = loading.opened->source.focus;
   viewer->material_names = loading.opened->source.material_names;
   if (!o.side_by_side.reference.empty())
@@ -162,9 +163,10 @@ Status view_scenes(ViewCommand* o, Viewer* viewer) {
 
 // Refuses options that exclude each other, and creates the folder for screenshots.
 Status check_options(const ViewCommand& o) {
+  RETURN_IF_ERROR(check_budget_options(o.budget));
   if (!o.servers.addresses.empty()) {
-    if (o.budget.ms > 0)
-      return failure("--budget-ms changes settings per frame and servers cannot: drop --budget-ms or --server");
+    if (const char* option = option_that_chooses(o.budget); chooses_settings(o.budget))
+      return failure("%s changes settings per frame and servers cannot: drop %s or --server", option, option);
     if (!o.side_by_side.reference.empty())
       return failure("--side-by-side works only without render servers: drop --side-by-side or --server");
   }
@@ -233,7 +235,7 @@ void add_view_command(Command program, const OptionalParts& parts, int* exit_sta
       .capture_default_str();
   if (parts.servers) add_servers_options(command, &o->servers);
   add_budget_options(command, &o->budget);
-  add_look_options(command, &o->common, "--budget-ms");
+  add_look_options(command, &o->common, {"--budget-ms", "--flip-max"});
   add_coherence_options(command, &o->common);
   add_vision_option(command, &o->common);
   if (parts.side_by_side) add_side_by_side_option(command, &o->side_by_side);

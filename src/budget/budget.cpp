@@ -21,6 +21,32 @@ namespace {
 constexpr double kGuessDoubt = 4, kElsewhereDoubt = 1.5, kMeasuredDoubt = 1.25;
 constexpr double kPriceTolerance = 1.2;  // of learnt prices that are not written back; chosen: within kMeasuredDoubt
 
+// Drops candidates with a larger error than allowed, and of the others all but the fastest, if that is wanted.
+Status bound_error(const FrontSource& source, Front* front) {
+  if (source.flip_max == 0) return success();
+  if (!errors_known(*front))
+    return failure(
+        "--flip-max needs measured errors, which this front lacks: measure them with `pocketray accuracy`, or name a "
+        "file "
+        "that has them with --front");
+  Front kept;
+  double least = 1;
+  for (std::uint32_t i = 0; i < front->count; ++i) {
+    const Candidate& c = front->candidates[i];
+    least = std::min(least, static_cast<double>(c.flip));
+    if (static_cast<double>(c.flip) <= source.flip_max) kept.candidates[kept.count++] = c;
+  }
+  if (kept.count == 0)
+    return failure("--flip-max is %.3g, but the most accurate settings of the front err by %.3g: allow that much",
+                   source.flip_max, least);
+  if (source.fastest) {
+    sort_by_price(&kept);
+    kept.count = 1;
+  }
+  *front = kept;
+  return success();
+}
+
 // The scene's front: from the named file, else from the cache, else the ladder.
 Status load_front(const Renderer& renderer, const FrontSource& source, const ContentHash* identity, OpenFront* f) {
   bool there;
@@ -51,7 +77,8 @@ Status load_front(const Renderer& renderer, const FrontSource& source, const Con
   drop_what_scene_ignores(&f->front, f->effects);
   f->is_priced = adopt_prices(&f->front, f->measured);
   sort_front(&f->front);
-  return success();
+  f->best = f->front.candidates[f->front.count - 1];
+  return bound_error(source, &f->front);
 }
 
 constexpr IndirectChoice kInstantRadiosity = indirect_choice(Effect::instant_radiosity);
@@ -107,7 +134,23 @@ Front prices_alone(Front front) {
   return front;
 }
 
+constexpr std::size_t kBoundsMax = 64;
+// "40 ms, ꟻLIP ≤ 0.03"
+void format_bounds(const Budget& budget, const char* error_name, char (&text)[kBoundsMax]) {
+  int used = 0;
+  if (budget.ms > 0) used = std::snprintf(text, sizeof text, "%.7g ms", budget.ms);
+  if (budget.flip_max > 0)
+    std::snprintf(text + used, sizeof text - static_cast<std::size_t>(used), "%s%s ≤ %.3g", used ? ", " : "",
+                  error_name, budget.flip_max);
+}
+
 }  // namespace
+
+Status check_budget_options(const BudgetOptions& options) {
+  if (!options.front.empty() && !chooses_settings(options))
+    return failure("--front is the file that --budget-ms and --flip-max choose from: add one of them, or drop it");
+  return success();
+}
 
 Status open_scene_with_front(const CommonOptions& common, const FrontSource& from,
                              const std::function<std::size_t(const Settings&)>& output_bytes, OpenScene* opened,
@@ -158,14 +201,14 @@ Status keep_measured(const OpenFront& f, const Front& measured) {
 
 void start_budget(const BudgetOptions& options, const OpenFront& front, const Renderer& renderer,
                   std::size_t frame_count, Budget* budget) {
-  CHECK_GT(options.ms, 0);
+  CHECK(chooses_settings(options));
   CHECK(budget != nullptr);
   *budget = Budget();
   budget->front = front;
-  budget->ms = options.ms;
+  budget->ms = options.ms, budget->flip_max = options.flip_max;
   budget->frame_ms.reserve(frame_count);
-  start_governor(front.front, options.ms * 1e6, pixel_count(renderer), front.is_guess ? kGuessDoubt : kElsewhereDoubt,
-                 front.is_priced, &budget->governor);
+  start_governor(front.front, (options.ms > 0 ? options.ms : kBudgetMsMax) * 1e6, pixel_count(renderer),
+                 front.is_guess ? kGuessDoubt : kElsewhereDoubt, front.is_priced, &budget->governor);
   budget->previous = budget->governor.current;
   for (std::uint32_t i = 0; i < front.front.count; ++i)
     if (find_candidate(front.measured, front.front.candidates[i])) set_doubt(&budget->governor, i, kMeasuredDoubt);
@@ -196,7 +239,7 @@ void end_budget_frame(Budget* budget, std::uint64_t ns) {
   budget->last = budget->governor.current;
   CHECK_LT(budget->last, budget->governor.front.count);
   ++budget->uses[budget->last];
-  budget->late += ms > 1.1 * budget->ms;  // kLate of governor.cpp
+  budget->late += budget->ms > 0 && ms > 1.1 * budget->ms;  // kLate of governor.cpp
   if (budget->frame_ms.size() < budget->frame_ms.capacity()) budget->frame_ms.push_back(ms);
 }
 
@@ -237,7 +280,9 @@ void write_budget_lines(const Budget& budget, HudText* text) {
   const Governor& g = budget.governor;
   CHECK(g.current < g.front.count && budget.previous < g.front.count);
   const Candidate &now = g.front.candidates[g.current], &before = g.front.candidates[budget.previous];
-  add_hud_line(text, "%s %.7g ms: %" PRIu32 " of %" PRIu32 "%s", budget.pinned ? "by hand, not" : "budget", budget.ms,
+  char bounds[kBoundsMax];
+  format_bounds(budget, "FLIP", bounds);
+  add_hud_line(text, "%s %s: %" PRIu32 " of %" PRIu32 "%s", budget.pinned ? "by hand, not" : "budget", bounds,
                g.current + 1, g.front.count, budget_too_small(g) ? ", too small" : "");
   char shown[kFrontLineMax];
   format_hud_quality(now, shown, sizeof shown);
@@ -266,7 +311,8 @@ Json budget_json(const Budget& budget) {
                           {"ns_per_pixel", learnt_price(budget.governor, i)},
                           {"frames", budget.uses[i]}});
   }
-  return {{"ms", budget.ms},
+  return {{"ms", budget.ms > 0 ? Json(budget.ms) : Json()},
+          {"flip_max", budget.flip_max > 0 ? Json(budget.flip_max) : Json()},
           {"frames", budget.frames},
           {"frames_within_110_percent", budget.frames - budget.late},
           {"too_small", budget_too_small(budget.governor)},
@@ -284,17 +330,19 @@ void print_budget(const Budget& budget, bool last_alone) {
   std::uint32_t most = budget.last;
   for (std::uint32_t i = 0; i < g.front.count && !last_alone; ++i)
     if (budget.uses[i] > budget.uses[most]) most = i;
-  const Candidate &chosen = g.front.candidates[most], &best = g.front.candidates[g.front.count - 1];
+  const Candidate &chosen = g.front.candidates[most], &best = budget.front.best;
   char quality[kFrontLineMax], change[kFrontLineMax];
   format_quality(chosen, quality, sizeof quality);
   describe_change(best, chosen, change, sizeof change);
-  std::printf("  %.7g ms: %s: expected ꟻLIP %s; traded away: %s\n", budget.ms, quality, error_text(chosen).c_str(),
-              change);
+  char bounds[kBoundsMax];
+  format_bounds(budget, "ꟻLIP", bounds);
+  std::printf("  %s: %s: expected ꟻLIP %s; traded away: %s\n", bounds, quality, error_text(chosen).c_str(), change);
   Range range;
   if (!budget.frame_ms.empty()) {
     std::vector<double> sorted = budget.frame_ms;
     range = range_of(sorted.data(), static_cast<std::uint32_t>(sorted.size()));
   }
+  if (budget.ms == 0) return;
   std::printf("  %.1f %% of %u frame%s within 110 %%, median %.1f ms, longest %.1f ms; %u change%s of settings\n",
               100.0 * (budget.frames - budget.late) / budget.frames, budget.frames, budget.frames == 1 ? "" : "s",
               range.median, range.max, g.switch_count, g.switch_count == 1 ? "" : "s");

@@ -16,13 +16,19 @@ namespace pocketray {
 constexpr double kBudgetMsMin = 0.001, kBudgetMsMax = 1e7;
 
 struct BudgetOptions {
-  double ms = 0;      // per frame; 0: no budget
-  std::string front;  // a file; empty: the scene's in the cache
+  double ms = 0;        // per frame; 0: none given
+  double flip_max = 0;  // mean ꟻLIP that settings may have, as measured; 0: any
+  std::string front;    // a file; empty: the scene's in the cache
 };
+// Whether settings are chosen from a front: the least error within the time, or the fastest within the error alone.
+inline bool chooses_settings(const BudgetOptions& options) { return options.ms > 0 || options.flip_max > 0; }
+Status check_budget_options(const BudgetOptions& options);
+inline const char* option_that_chooses(const BudgetOptions& o) { return o.ms > 0 ? "--budget-ms" : "--flip-max"; }
 
 // The settings to choose from for an open scene.
 struct OpenFront {
   Front front;
+  Candidate best;           // the most accurate before --flip-max left some out
   Front measured;           // the prices measured on this machine
   Front file;               // if is_whole: all contents of the file
   EffectMask effects = 0;   // effects that are on; candidates that differ only in others are equal here
@@ -37,7 +43,10 @@ void print_notes(const OpenFront& front);  // one line each, on stderr
 struct FrontSource {
   std::string file;         // empty: the cache
   bool may_be_new = false;  // the file need not exist yet
+  double flip_max = 0;      // drops candidates with a larger error; 0: none
+  bool fastest = false;     // keeps the fastest alone
 };
+inline FrontSource front_source(const BudgetOptions& o) { return {o.front, false, o.flip_max, o.ms == 0}; }
 // Opens the scene, ready for rendering, with memory for the most expensive candidate. Drops candidates that do not fit,
 // with a note.
 Status open_scene_with_front(const CommonOptions& common, const FrontSource& source,
@@ -52,7 +61,7 @@ Status keep_measured(const OpenFront& front, const Front& measured);
 struct Budget {
   OpenFront front;
   Governor governor;
-  double ms = 0;
+  double ms = 0, flip_max = 0;         // as in BudgetOptions
   bool pinned = false;                 // the user chose the candidate
   std::uint32_t previous = 0;          // previous candidate, for reporting what a change trades
   std::uint32_t frames = 0, late = 0;  // late: beyond 110 %

@@ -51,7 +51,37 @@ expect budget_excludes_what_it_chooses 2 'excludes' render cube "${small[@]}" --
 for ms in 0 -1 nan inf 1e305 0.0001 soon; do
   expect "budget_no_time_$ms" 1 'budget-ms' render cube "${small[@]}" --budget-ms "$ms"
 done
-expect front_without_budget 2 'requires' render cube "${small[@]}" --front one.front
+expect front_without_budget 1 'choose from: add one of them' render cube "${small[@]}" --front one.front -o refused.ppm
+# Goal: --flip-max takes the fastest settings whose error was measured to be small enough, whatever they take, and with a
+# time the best of these. Method: three candidates whose pictures differ; the picture of each by name.
+rest="depth=1 area-lights=1 area-shadows=adaptive area-irradiance=analytic cut-off=0 texture-filter=nearest normals=flat indirect=auto reconstruction=bicubic virtual-lights=64 light-tolerance=0.0625 environment-shadows=32"
+printf "pocketray-front 1\nsamples=1 $rest selective=0.5 resolution=half flip=0.1 ns=100\nsamples=1 $rest selective=0 resolution=full flip=0.02 ns=1000\nsamples=9 $rest selective=0 resolution=full flip=0.01 ns=9000\n" >errors.front
+cp errors.front as_measured.front
+settings=(--depth 1 --area-lights 1 --cut-off 0 --texture-filter nearest --normals flat)
+"${run[@]}" render "$subject" "${small[@]}" "${settings[@]}" -o plain.ppm >/dev/null
+"${run[@]}" render "$subject" "${small[@]}" "${settings[@]}" --samples 9 -o fine.ppm >/dev/null
+"${run[@]}" render "$subject" "${small[@]}" "${settings[@]}" --selective .5 --resolution half -o coarse.ppm >/dev/null
+for row in 0.5:coarse:0.1 0.05:plain:0.02 0.02:plain:0.02 0.01:fine:0.01; do
+  IFS=: read -r most name error <<<"$row"
+  expect "flip_max_$most" 0 "ꟻLIP ≤ $most: samples=. .*expected ꟻLIP ${error}[0-9]*; traded away: " \
+    render "$subject" "${small[@]}" --flip-max "$most" --front errors.front -o chosen.ppm
+  check "flip_max_${most}_gives_the_picture" cmp -s chosen.ppm "$name.ppm"
+  cp as_measured.front errors.front  # with its prices, which are no longer this program's
+done
+expect flip_max_within_a_time 0 '1000000 ms, ꟻLIP ≤ 0.05: samples=9 ' \
+  render "$subject" "${small[@]}" --flip-max .05 --budget-ms 1000000 --front errors.front -o chosen.ppm
+check flip_max_within_a_time_is_the_best cmp -s chosen.ppm fine.ppm
+expect flip_max_in_json 0 '"flip_max": 0.05' \
+  render cube "${small[@]}" --flip-max .05 --front errors.front --json - -o found.ppm
+expect flip_max_beyond_the_front 1 'is 0.001, but the most accurate settings of the front err by 0.01: allow' \
+  render "$subject" "${small[@]}" --flip-max .001 --front errors.front -o refused.ppm
+expect flip_max_not_measured 1 'measure them with `pocketray accuracy`' render "$subject" "${small[@]}" --flip-max .02 -o refused.ppm
+expect flip_max_excludes_what_it_chooses 2 'excludes' render cube "${small[@]}" --flip-max .02 --samples 4
+expect flip_max_and_looks 2 'excludes' render cube "${small[@]}" --flip-max .02 --background 1,1,1
+expect flip_max_aov 1 '--flip-max or --aov' render cube "${small[@]}" --flip-max .02 --aov depth -o refused.ppm
+expect flip_max_of_a_view 0 'ꟻLIP ≤ 0.05: samples=1' \
+  view "$subject" "${small[@]}" --screen null --frames 2 --flip-max .05 --front as_measured.front
+for most in 0 -1 nan 1.5 soon; do expect "flip_max_$most" 1 'flip-max' render cube "${small[@]}" --flip-max "$most"; done
 expect front_is_not_there 1 'no such file' render cube "${small[@]}" --budget-ms 40 --front none.front -o refused.ppm
 printf 'pocketray-front 1\nsamples=99\n' >bad.front
 expect front_is_bad 1 'bad.front: line 2: ' render cube "${small[@]}" --budget-ms 40 --front bad.front -o refused.ppm
