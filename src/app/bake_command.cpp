@@ -65,13 +65,15 @@ Status bake(const BakeOptions& o) {
   std::uint64_t start = clock_ns();
   HeapScene heap;
   ModelOptions model = o.model;
-  model.mip_maps = !o.no_mip_maps;
+  model.mip_maps = !o.no_mip_maps, model.studio = o.environment.empty();
   RETURN_IF_ERROR(read_heap_scene(o.input, model, &heap));
   Scene& scene = heap.scene;
   double read_ms = static_cast<double>(clock_ns() - start) * 1e-6;
   start = clock_ns();
   EnvironmentMemory environment;
-  if (!o.environment.empty()) RETURN_IF_ERROR(set_environment(o.environment, &scene, &environment));
+  const bool has_studio = scene.environment_info.count > 0;
+  if (!o.environment.empty() && o.environment != kNoEnvironment)
+    RETURN_IF_ERROR(set_environment(o.environment, &scene, &environment));
   if (!environment.file.empty()) heap.files.push_back(environment.file);
   RETURN_IF_ERROR(check_not_read(heap.files, {{"-o", o.output}, {"--json", o.json}}));
   SolvedRadiosity solved;
@@ -89,6 +91,7 @@ Status bake(const BakeOptions& o) {
   give_block_back(accel_block);
   RETURN_IF_ERROR(status);
   if (!heap.warning.empty()) print_note(heap.warning);
+  if (has_studio) print_note("the model has no light: baking a studio with it; --environment none leaves it out");
   if (o.json != "-")
     std::printf("%s: %s, %s, %s, %.2f MiB (accelerator %.2f MiB), read in %.0f ms, built in %.0f ms\n",
                 o.output == "-" ? "standard output" : shown(o.output).c_str(),

@@ -129,8 +129,9 @@ void add_view_options(Command command, CommonOptions* o) {
 Option add_environment_option(Command command, std::string* name) {
   return command.add_option(
       "--environment", *name,
-      "light from all directions: an equirectangular picture (.hdr, .png, .jpg), or sky, sky:ELEVATION,TURBIDITY: a "
-      "clear sky with a sun 0 … 90 degrees high (45) and haze 2 … 10 (3)");
+      "light from all directions: an equirectangular picture (.hdr, .png, .jpg); sky or sky:ELEVATION,TURBIDITY, a "
+      "clear sky with a sun 0 … 90 degrees high (45) and haze 2 … 10 (3); studio, which models without light get where "
+      "it shows; or none");
 }
 
 void add_look_options(Command command, CommonOptions* o, std::initializer_list<const char*> own_look) {

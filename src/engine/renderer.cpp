@@ -30,7 +30,8 @@ namespace {
 void add_what_is_missing(Renderer* renderer) {
   Scene& scene = renderer->scene;
   float aspect = static_cast<float>(renderer->settings.width) / static_cast<float>(renderer->settings.height);
-  if (renderer->look.has_background) scene.environment_info = {}, scene.environment_texels = {};
+  if (renderer->look.has_background || renderer->look.environment == EnvironmentChoice::none)
+    leave_out_environment(&scene);
   if (scene.cameras.empty()) {
     scene.info.default_camera = 1;
     renderer->camera = default_camera(scene, aspect, renderer->look.vertical_fov);
@@ -42,12 +43,14 @@ void add_what_is_missing(Renderer* renderer) {
   if (!has_light(scene) || scene.info.default_lights != 0) {
     scene.info.default_lights = 1;
     scene.info.auto_exposure = 0;
-    scene.info.ambient = default_ambient();
+    scene.info.ambient = scene.environment_info.empty() ? default_ambient() : Vec3{0, 0, 0};
     if (is_zero(scene.info.background)) scene.info.background = default_background();
     default_lights(scene, renderer->camera, renderer->default_lights);
     scene.lights = {renderer->default_lights, kDefaultLightCount};
     if (renderer->look.light == LightChoice::sun) renderer->default_lights[0] = default_sun(), scene.lights.count = 1;
     if (renderer->look.light == LightChoice::none) scene.lights = {};
+    if (scene.environment_info.count)
+      for (Light& light : renderer->default_lights) light.intensity = light.intensity * kStudioLightShare;
   }
   if (renderer->look.has_background) scene.info.background = renderer->look.background;
 }

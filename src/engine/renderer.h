@@ -61,8 +61,11 @@ struct LastPictureState {
 
 // Deviations from the look that a scene brings or gets; initially none.
 enum class LightChoice { key, sun, none };  // of a scene without lights: default_lights(), default_sun(), ambient alone
+// Of the scene as it is; one that replaces it; none.
+enum class EnvironmentChoice { as_scene, given, none };
 struct Look {
   LightChoice light = LightChoice::key;
+  EnvironmentChoice environment = EnvironmentChoice::as_scene;
   bool has_background = false;
   Vec3 background;
   double vertical_fov = 0;  // radians, of every perspective camera; 0: the camera's own

@@ -15,7 +15,8 @@ struct ImportedEnvironment {
   std::vector<std::uint32_t> texels;
   Vec3 mean;  // radiance
   std::vector<Light> lights;
-  std::string file;  // that was read; empty: none
+  std::string file;        // that was read; empty: none
+  bool is_studio = false;  // beside the default lights
 };
 
 // A picture of linear radiance, rows from the top.
@@ -24,8 +25,8 @@ struct RadiancePicture {
   std::vector<Vec3> pixels;
 };
 
-// Reads "sky", "sky:ELEVATION[,TURBIDITY]" or a file: Radiance RGBE (.hdr), PNG or JPEG, equirectangular, with −Z in
-// the middle and +Y on top. PNG and JPEG hold radiance up to 1, in sRGB.
+// Reads "sky", "sky:ELEVATION[,TURBIDITY]", "studio" or a file: Radiance RGBE (.hdr), PNG or JPEG, equirectangular,
+// with −Z in the middle and +Y on top. PNG and JPEG hold radiance up to 1, in sRGB.
 Status read_environment(const std::string& name, ImportedEnvironment* environment);
 
 // Decodes a Radiance picture [Ward 1991, "Real pixels", Graphics Gems II ch. II.5]. Its bytes are hostile.
@@ -45,5 +46,12 @@ struct Sky {
 // Without the sun's disc, which is a directional light.
 Vec3d sky_radiance(const Sky& sky, const Vec3d& direction);
 Light sun_of(const Sky& sky);
+
+// A studio: soft boxes above a dark floor and a grey backdrop, for default lights to stand in (plan/plan_scene.h).
+constexpr const char* kStudio = "studio";
+Vec3d studio_radiance(const Vec3d& direction);
+// Whether a scene that has no environment looks poor without one: triangles are metal, mirror, glass, coated or
+// polished. Others reflect even light nearly alike.
+bool calls_for_studio(const Scene& scene);
 
 }  // namespace pocketray

@@ -14,7 +14,7 @@
 namespace pocketray {
 namespace {
 
-constexpr std::uint32_t kSkySide = 256, kFileSideMax = 512;
+constexpr std::uint32_t kSkySide = 256, kStudioSide = 128, kFileSideMax = 512;
 constexpr std::uint64_t kFileBytesMax = std::uint64_t(1) << 30;
 
 // A number at *at, which moves behind it.
@@ -48,6 +48,11 @@ Status read_sky(const std::string& name, ImportedEnvironment* environment) {
   environment->lights = {sun_of(sky)};
   return make_environment(
       kSkySide, 2, [&](const Vec3d& direction) { return sky_radiance(sky, direction); }, environment);
+}
+
+Status make_studio(ImportedEnvironment* environment) {
+  environment->is_studio = true;
+  return make_environment(kStudioSide, 2, studio_radiance, environment);
 }
 
 // Means of 2 × 2 pixels.
@@ -107,6 +112,7 @@ Status read_picture(const std::string& name, RadiancePicture* picture) {
 Status read_environment(const std::string& name, ImportedEnvironment* environment) {
   *environment = ImportedEnvironment();
   if (name == "sky" || name.compare(0, 4, "sky:") == 0) return read_sky(name, environment);
+  if (name == kStudio) return make_studio(environment);
   environment->file = name;
   try {
     RadiancePicture picture;

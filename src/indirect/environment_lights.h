@@ -18,11 +18,16 @@ struct EnvironmentLights {
   std::uint32_t wanted = 0;                      // the count that they were placed for
 };
 
+// Whether default lights stand before a studio. They cast shadows; its own would be faint and take as many rays again.
+inline bool default_lights_cast_shadows(const Scene& scene) {
+  return scene.info.default_lights != 0 && scene.lights.count > 0;
+}
+
 // Whether memory is planned for them, even if other settings leave them out at first.
 inline bool plans_environment_lights(const Scene& scene, const Settings& settings) {
   const EffectMask effects = bit(Effect::environment) | bit(Effect::environment_shadow);
-  return scene.environment_info.count > 0 && settings.environment_shadows > 0 && !(settings.forced_off & effects) &&
-         has(kAllEffects, Effect::environment_shadow);
+  return scene.environment_info.count > 0 && !default_lights_cast_shadows(scene) && settings.environment_shadows > 0 &&
+         !(settings.forced_off & effects) && has(kAllEffects, Effect::environment_shadow);
 }
 
 // Places `count` lights for the scene's environment, at most kEnvironmentLightMax.

@@ -8,6 +8,7 @@
 #include "effect/effect_list.h"
 #include "effect/setting_list.h"
 #include "indirect/environment.h"
+#include "indirect/environment_lights.h"
 #include "indirect/indirect_list.h"
 #include "scene/metallic_roughness.h"
 #include "shade/point_groups.h"
@@ -169,6 +170,7 @@ void decide_environment_shadow(const Scene& scene, const Settings& settings, con
   if (!environment_of(scene) || has(settings.forced_off, Effect::environment)) return off("no environment");
   if (settings.indirect == IndirectChoice::none) return off("no indirect light requested");
   if (indirect && has(indirect->effects, Effect::radiosity)) return off("radiosity stores them");
+  if (default_lights_cast_shadows(scene)) return off("the default lights cast shadows");
   if (settings.environment_shadows == 0) return off("--environment-shadows 0");
   if (settings.selective_contrast > 0) return off("selective rendering interpolates pixels");
   if (settings.resolution != Resolution::full) return off("undersampling reconstructs pixels");
@@ -231,8 +233,9 @@ EffectPlan plan_effects(const Scene& scene, const Settings& settings) {
     w.set(Effect::area_light, true, "%u of %u materials emit light: %u points each, all tested where partly hidden",
           c.emissive, c.materials, settings.points_per_area_light);
   if (const EnvironmentInfo* environment = environment_of(scene))
-    w.set(Effect::environment, true, "%u×%u texels, radiance at most %.3g", environment->side, environment->side,
-          static_cast<double>(max_component(environment->radiance_max)));
+    w.set(Effect::environment, true, "%s%u×%u texels, radiance at most %.3g",
+          scene.info.default_lights != 0 ? "no light of the scene's own: a studio, " : "", environment->side,
+          environment->side, static_cast<double>(max_component(environment->radiance_max)));
   else
     w.set(Effect::environment, false, "no environment");
   decide_environment_shadow(scene, settings, indirect, c.diffuse, &w);

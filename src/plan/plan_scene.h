@@ -27,6 +27,9 @@ bool lights_itself(const Scene& scene);
 // ambient term comes with them.
 constexpr std::uint32_t kDefaultLightCount = 2;
 void default_lights(const Scene& scene, const Camera& camera, Light* lights);
+// What is left of them in a studio (import/environment.h), an environment that comes beside default lights. Chosen: a
+// white surface that faces the key is as bright as without a studio, within a tenth.
+constexpr float kStudioLightShare = 0.5f;
 // In place of these lights, one from high above, whatever the camera.
 Light default_sun();
 Vec3 default_ambient();
@@ -35,5 +38,9 @@ Vec3 default_background();
 // Whether the scene is visible without default lights: it has a light, an ambient term, an environment or an emissive
 // surface, or all its surfaces are unlit.
 bool has_light(const Scene& scene);
+
+// Takes the environment away. Its mean stays as an ambient term, except of a studio, and of an environment that was the
+// only light: default lights replace these.
+void leave_out_environment(Scene* scene);
 
 }  // namespace pocketray

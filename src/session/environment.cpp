@@ -3,6 +3,8 @@
 #include <cstring>
 
 #include "base/check.h"
+#include "plan/plan_scene.h"
+#include "session/scene_options.h"
 #ifdef POCKETRAY_HAVE_IMPORT
 #include "import/environment.h"
 #endif
@@ -14,6 +16,7 @@ Status set_environment(const std::string& name, Scene* scene, EnvironmentMemory*
   CHECK(scene != nullptr && memory != nullptr);
   if (!scene->radiosity_info.empty())
     return failure("the scene stores radiosity, solved for other surroundings: bake it again with --environment");
+  const bool wants_lights = scene->info.default_lights != 0 || !has_light(*scene);
   ImportedEnvironment read;
   RETURN_IF_ERROR(read_environment(name, &read));
   if (scene->lights.count + read.lights.size() > kLightCountMax)
@@ -29,7 +32,7 @@ Status set_environment(const std::string& name, Scene* scene, EnvironmentMemory*
   scene->lights = {memory->lights.data(), static_cast<std::uint32_t>(memory->lights.size())};
   scene->info.background = read.mean;
   scene->info.ambient = {0, 0, 0};
-  scene->info.default_lights = 0;
+  scene->info.default_lights = read.is_studio && wants_lights ? 1 : 0;
   return success();
 }
 #else
@@ -41,7 +44,7 @@ Status set_environment(const std::string& name, Scene*, EnvironmentMemory*) {
 
 Status set_environment_if_requested(const std::string& name, Renderer* renderer, SceneSource* source,
                                     SceneStorage* storage) {
-  if (name.empty()) return success();
+  if (name.empty() || name == kNoEnvironment) return success();
   CHECK(renderer != nullptr && source != nullptr && storage != nullptr);
   Scene* scene = &renderer->scene;
   EnvironmentMemory memory;

@@ -24,6 +24,7 @@ struct ModelOptions {
   std::uint32_t texture_side_max = 512;
   bool mip_maps = true;
   float crease_angle = 40;
+  bool studio = true;  // for models that call for one
 };
 
 // Makes a built-in scene or imports a model.

@@ -33,6 +33,19 @@ Status set_pace(const CommonOptions& o, Renderer* renderer) {
   return success();
 }
 
+// What stands in for the light that a scene does not have, and what changes it.
+const char* default_light_note(const Scene& scene, LightChoice light) {
+  constexpr const char* kAdded[] = {
+      "adding a key and a fill light; --light and --environment change that",
+      "adding a sun",
+      "adding ambient light alone",
+      "adding a key and a fill light in a studio; --environment none or --background leaves the studio out",
+      "adding a sun over a studio",
+      "adding the light of a studio alone",
+  };
+  return kAdded[static_cast<int>(light) + (scene.environment_info.count ? 3 : 0)];
+}
+
 }  // namespace
 
 Status check_memory(std::size_t wanted, std::size_t free_bytes) {
@@ -123,9 +136,8 @@ void print_notes(const OpenScene& opened) {
         "pocketray: the accelerator %s does not fit in --memory; using the slower %s. Raise --memory to use %s\n",
         kAccelList[0]->name, opened.renderer.accel_info->name, kAccelList[0]->name);
   const SceneInfo& info = opened.renderer.scene.info;
-  constexpr const char* kLights[] = {"adding a key and a fill light", "adding a sun", "adding ambient light alone"};
   const LightChoice light = opened.renderer.look.light;
-  const char* added = kLights[static_cast<int>(light)];
+  const char* added = default_light_note(opened.renderer.scene, light);
   if (info.default_camera != 0 && info.default_lights != 0)
     std::fprintf(stderr, "pocketray: the scene has no camera and no light: framing its bounds, %s\n", added);
   else if (info.default_camera != 0)

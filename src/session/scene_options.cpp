@@ -232,6 +232,8 @@ Status parse_look(const CommonOptions& o, Look* look) {
   *look = Look();
   look->has_background = !o.background.empty();
   if (look->has_background) RETURN_IF_ERROR(parse_background(o.background, &look->background));
+  if (!o.environment.empty())
+    look->environment = o.environment == kNoEnvironment ? EnvironmentChoice::none : EnvironmentChoice::given;
   if (o.light == "sun") look->light = LightChoice::sun;
   if (o.light == "none") look->light = LightChoice::none;
   float degrees;

@@ -26,6 +26,9 @@ struct SettingOptions {
   SettingOption& operator[](const char* name);  // by name, which must exist
 };
 
+// For --environment: leaves the scene's out.
+constexpr const char* kNoEnvironment = "none";
+
 struct CommonOptions {
   std::string scene;
   std::string size, memory, effects = "auto", camera, exposure, json, device, emulate, isa, accel = "auto";

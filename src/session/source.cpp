@@ -9,6 +9,10 @@
 #include "platform/memory.h"
 #include "scene/baked.h"
 #include "scene/builtin/builtin.h"
+#include "session/environment.h"
+#ifdef POCKETRAY_HAVE_IMPORT
+#include "import/environment.h"
+#endif
 
 namespace pocketray {
 namespace {
@@ -41,7 +45,8 @@ Status load_baked(const std::string& name, Renderer* renderer, SceneSource* sour
 #ifdef POCKETRAY_HAVE_IMPORT
 Status load_imported(const std::string& name, Renderer* renderer, SceneSource* source, SceneStorage* storage) {
   ImportedScene imported;
-  RETURN_IF_ERROR(import_model(name, ImportOptions(), &imported));
+  const bool with_studio = renderer->look.environment == EnvironmentChoice::as_scene && !renderer->look.has_background;
+  RETURN_IF_ERROR(import_model(name, ImportOptions(), &imported, with_studio));
   source->warning = imported.warning;
   source->material_names = imported.material_names;
   source->parts = imported.parts;
@@ -62,11 +67,29 @@ Status load_imported(const std::string& name, Renderer* renderer, SceneSource* s
 }  // namespace
 
 #ifdef POCKETRAY_HAVE_IMPORT
-Status import_model(const std::string& name, const ImportOptions& options, ImportedScene* imported) {
+namespace {
+
+struct FurnishedModel {
+  std::shared_ptr<void> model;
+  EnvironmentMemory studio;
+};
+
+Status add_studio(ImportedScene* imported) {
+  auto storage = std::make_shared<FurnishedModel>();
+  storage->model = imported->storage;
+  RETURN_IF_ERROR(set_environment(kStudio, &imported->scene, &storage->studio));
+  imported->storage = storage;
+  return success();
+}
+
+}  // namespace
+
+Status import_model(const std::string& name, const ImportOptions& options, ImportedScene* imported, bool with_studio) {
   RETURN_IF_ERROR(import_scene(name, options, imported));
   bool lit = lights_itself(imported->scene);
   imported->scene.info.default_lights = lit ? 0 : 1;
   imported->scene.info.auto_exposure = lit ? 1.0f : 0.0f;
+  if (!lit && with_studio && calls_for_studio(imported->scene)) return add_studio(imported);
   return success();
 }
 #endif

@@ -33,8 +33,9 @@ void give_block_back(void* block);
 
 #ifdef POCKETRAY_HAVE_IMPORT
 // Imports a model and decides its light. A model with lights gets its exposure measured, since files' units vary beyond
-// a display's range; others ask for the default lights.
-Status import_model(const std::string& name, const ImportOptions& options, ImportedScene* imported);
+// a display's range; others ask for the default lights, and get a studio `with_studio` if they call for it.
+Status import_model(const std::string& name, const ImportOptions& options, ImportedScene* imported,
+                    bool with_studio = true);
 #endif
 
 // The error for a scene that needs more than `limit` bytes; stores the memory it needs in *source.

@@ -8,6 +8,7 @@
 #include "platform/file.h"
 #include "session/output.h"
 #include "session/report.h"
+#include "session/scene_options.h"
 
 namespace pocketray {
 namespace {
@@ -45,6 +46,7 @@ std::string reference_key(const Rig& rig, const AccuracyOptions& options, Transp
               {"effects", options.common.effects},
               {"sampler", kReferenceSampler}};
   const CommonOptions& common = options.common;  // the camera has --fov, the scene's hash --environment
+  if (common.environment == kNoEnvironment) key["environment"] = common.environment;
   if (!common.background.empty()) key["background"] = common.background;
   if (common.light != CommonOptions().light) key["light"] = common.light;
   return key.dump(-1, ' ', false, Json::error_handler_t::replace);

@@ -61,6 +61,38 @@ check sky_is_seen bash -c '! cmp -s sky.ppm red.ppm && ! cmp -s sky.ppm low.ppm'
 expect too_little_memory 1 'MiB' render cube "${small[@]}" --memory 256K --environment sky -o refused.ppm
 expect in_view 0 '' view model.obj "${small[@]}" --screen null --frames 2 --environment sky
 
+# Goal: a metal without light stands in a studio, which one line tells, as baked and as read; --environment none leaves it
+# out, where it takes no bytes. A diffuse model gets it when asked for.
+printf 'newmtl metal\nKd 0.8 0.8 0.8\nPm 1\nPr 0.2\n' >metal.mtl
+printf 'mtllib metal.mtl\nusemtl metal\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' >metal.obj
+lines_of_studio() { grep -c 'studio' <<<"$1"; }
+check studio_is_told test "$(lines_of_studio "$(render metal.obj studio.ppm)")" = 1
+check diffuse_has_none test "$(lines_of_studio "$(render model.obj plain.ppm)")" = 0
+check studio_is_told_in_bake test "$(lines_of_studio "$("${run[@]}" bake metal.obj -o metal.pray 2>&1)")" = 1
+render metal.pray baked.ppm >/dev/null
+check studio_baked_is_the_same cmp -s studio.ppm baked.ppm
+plan=$("${run[@]}" plan metal.pray "${small[@]}" 2>&1)
+check plan_tells_the_studio grep -Eq 'environment +on.*a studio, 128×128 texels' <<<"$plan"
+check plan_tells_its_bytes grep -Eq 'scene +environment +0\.1 MiB' <<<"$plan"
+check plan_tells_who_casts_shadows grep -Eq 'environment-shadow +- .*the default lights cast shadows' <<<"$plan"
+check no_studio_is_told test "$(lines_of_studio "$(render metal.pray none.ppm --environment none)")" = 0
+check no_studio_is_seen bash -c '! cmp -s studio.ppm none.ppm'
+check no_studio_is_baked test "$(lines_of_studio "$("${run[@]}" bake metal.obj -o none.pray --environment none 2>&1)")" = 0
+check no_studio_takes_no_bytes test $(($(stat -c %s metal.pray) - $(stat -c %s none.pray))) -gt 100000
+for scene in metal.obj none.pray; do
+  render $scene again.ppm --environment none >/dev/null
+  check "no_studio_in_$scene" cmp -s none.ppm again.ppm
+done
+check studio_on_demand test "$(lines_of_studio "$(render model.obj asked.ppm --environment studio)")" = 1
+check studio_lights_diffuse bash -c '! cmp -s plain.ppm asked.ppm'
+check studio_lights_alone grep -q 'the light of a studio alone' <<<"$(render metal.pray alone.ppm --light none)"
+
+# Goal: a background in place of a sky leaves the sky's light, besides its sun. Method: without indirect light it is gone.
+"${run[@]}" bake model.obj -o sky.pray --environment sky >/dev/null
+render sky.pray kept.ppm --background '#0000ff' --exposure fixed >/dev/null
+render sky.pray gone.ppm --background '#0000ff' --exposure fixed --indirect none >/dev/null
+check sky_light_is_kept bash -c '! cmp -s kept.ppm gone.ppm'
+
 # Goal: a sequence under another sky, or of another file, is not continued. Method: --resume with each changed.
 "${run[@]}" bake cube -o resumed.pray >/dev/null
 list=(render resumed.pray "${small[@]}" --frames 0:2 -o resumed.ppm)

@@ -19,6 +19,7 @@ import sys
 HERE = os.path.dirname(os.path.abspath(__file__))
 WIDTH, HEIGHT = 320, 240
 SAMPLES, DEPTH = 16, 8
+MEAN_MAX = 0.05  # of all models
 SUNS = ({"direction": (0.35, 0.8, 0.5), "irradiance": 1.5}, {"direction": (-0.75, 0.35, 0.55), "irradiance": 0.5})
 WINDOW = {"direction": (-0.6, 0.3, 0.75), "cosine": 0.94, "radiance": 5.0}
 
@@ -190,13 +191,17 @@ def judge(program, model, camera, folder, environment):
             "pictures": [picture, model["picture"], difference]}
 
 
-def draw(rows, columns, sheet):
+def draw(rows, columns, colors, sheet):
+    """Labels have two lines: the longest names fill the width of a picture."""
     labelled = []
     for row in rows:
-        for label, picture in zip((f"{row['model']}  {row['flip']:.3f}", "Cycles", "ꟻLIP"), row["pictures"]):
-            labelled += ["-label", label, picture]
-    status, _, messages = run(["montage", "-font", "DejaVu-Sans", "-pointsize", "11", *labelled, "-tile",
-                               f"{3 * columns}x", "-geometry", "160x120+2+2", sheet])
+        for label, picture in zip((row["model"], "Cycles", "ꟻLIP"), row["pictures"]):
+            value = f"{row['flip']:.3f}" if label == "ꟻLIP" else " "
+            labelled += ["-label", f"{label}\n{value}", picture]
+    status, _, messages = run(["montage", "-font", "DejaVu-Sans", "-pointsize", "10", *labelled, "-tile",
+                               f"{3 * columns}x", "-geometry", "160x120+2+2", "-alpha", "remove", "-alpha", "off", sheet])
+    if not status and colors:
+        status, _, messages = run(["convert", sheet, "-dither", "None", "-colors", str(colors), "PNG8:" + sheet])
     if status:
         fail("montage: " + messages)
     print(f"the sheet: {sheet}")
@@ -210,7 +215,10 @@ def main():
     parser.add_argument("--samples", type=int, default=64, help="Cycles' samples a pixel (64)")
     parser.add_argument("--folder", default="build/contact-sheet", help="where pictures go; Cycles' are kept there")
     parser.add_argument("--columns", type=int, default=4, help="models side by side on the sheet (4)")
+    parser.add_argument("--colors", type=int, help="colours of the sheet's palette, for a small file; all otherwise")
     parser.add_argument("--json", metavar="FILE", help="also write the table as JSON")
+    parser.add_argument("--fail-above", type=float, metavar="MEAN",
+                        help=f"exit with 1 if the mean ꟻLIP exceeds it ({MEAN_MAX} for all models)")
     arguments = parser.parse_args()
     scenes = os.path.join(arguments.shared, "scenes")
     if not os.path.isdir(scenes):
@@ -257,12 +265,16 @@ def main():
         fail("no model could be rendered by both")
     for row in rows:
         print(f"{row['flip']:.3f}  {row['model']}" + "".join("\n       " + text for text in row["warnings"]))
-    print(f"{sum(row['flip'] for row in rows) / len(rows):.3f}  mean of {len(rows)}; left out: " +
+    mean = sum(row["flip"] for row in rows) / len(rows)
+    print(f"{mean:.3f}  mean of {len(rows)}; left out: " +
           (", ".join(sorted(set(names) - {row["model"] for row in rows})) or "none"))
-    draw(rows, arguments.columns, os.path.join(folder, "sheet.png"))
+    draw(rows, arguments.columns, arguments.colors, os.path.join(folder, "sheet.png"))
     if arguments.json:
         with open(arguments.json, "w") as file:
             json.dump([{key: row[key] for key in ("model", "flip", "warnings")} for row in rows], file, indent=2)
+    limit = arguments.fail_above if arguments.models or arguments.fail_above is not None else MEAN_MAX
+    if limit is not None and mean > limit:
+        fail(f"the mean ꟻLIP is {mean:.3f}, more than {limit:g}")
 
 
 if __name__ == "__main__":

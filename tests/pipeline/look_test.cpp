@@ -2,10 +2,12 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <string>
 
 #include "base/fmath.h"
 #include "plan/plan_scene.h"
 #include "support/generated_scene.h"
+#include "support/test_environment.h"
 
 using namespace pocketray;
 
@@ -94,4 +96,65 @@ TEST_CASE("look_sets_the_field_of_view") {
     generated->bind();
     CHECK(same_picture(asked, picture_of(*rendered(generated->scene, Look(), 0.5))));
   }
+}
+
+// Goal: an environment that is left out, for a background or altogether, leaves its light: as an ambient term beside
+// other lights, and in default lights where there are none. Method: pictures equal those of scenes that have this light
+// themselves, bit for bit.
+TEST_CASE("look_keeps_the_light_of_environments_left_out") {
+  const TestEnvironment even = even_environment({0.5f, 0.25f, 0.125f});
+  for (bool has_background : {false, true}) {
+    Look look, background_only;
+    look.environment = EnvironmentChoice::none;
+    if (has_background) {
+      look = Look();
+      look.has_background = background_only.has_background = true;
+      look.background = background_only.background = {0.1f, 0.2f, 0.3f};
+    }
+    for (std::uint32_t features : {0u, bit(Feature::point_light)}) {
+      CAPTURE(features);
+      auto generated = generate_scene(features, 1);
+      Scene with = generated->scene, without = generated->scene;
+      even.give(&with);
+      auto test = rendered(with, look);
+      CHECK(test->renderer.scene.environment_info.empty());
+      CHECK(test->renderer.scene.info.default_lights == (features ? 0 : 1));
+      if (features) without.info.ambient = even.info.irradiance[0];
+      CHECK(test->renderer.scene.info.ambient == (features ? Vec3{0.5f, 0.25f, 0.125f} : default_ambient()));
+      CHECK(same_picture(picture_of(*test), picture_of(*rendered(without, background_only))));
+    }
+  }
+}
+
+// Goal: in a studio, an environment beside default lights, these give a share of their light and alone cast shadows;
+// without it, the scene is as if it had never been there. Method: what was planned; pictures.
+TEST_CASE("look_puts_default_lights_into_a_studio") {
+  const TestEnvironment even = even_environment({0.3f, 0.3f, 0.3f});
+  auto dark = generate_scene(0, 1);
+  dark->scene.info.background = {0, 0, 0};
+  Scene studio = dark->scene;
+  even.give(&studio);
+  studio.info.default_lights = 1, studio.info.background = {0.3f, 0.3f, 0.3f};
+  Look look;
+  const auto test = rendered(studio, look), plain = rendered(dark->scene, look);
+  const Renderer &in = test->renderer, &out = plain->renderer;
+  REQUIRE(in.scene.lights.count == kDefaultLightCount);
+  for (std::uint32_t i = 0; i < kDefaultLightCount; ++i)
+    CHECK(in.scene.lights[i].intensity == out.scene.lights[i].intensity * kStudioLightShare);
+  CHECK(is_zero(in.scene.info.ambient));
+  CHECK(has(in.effects.mask, Effect::environment));
+  CHECK_FALSE(has(in.effects.mask, Effect::environment_shadow));
+  auto planned = [](const Renderer& renderer, const std::string& part) {
+    return std::any_of(renderer.memory.parts, renderer.memory.parts + renderer.memory.part_count,
+                       [&](const MemoryPart& p) { return part == p.name; });
+  };
+  CHECK_FALSE(planned(in, "environment shadows"));
+  look.light = LightChoice::none;
+  const auto alone = rendered(studio, look);
+  CHECK(has(alone->renderer.effects.mask, Effect::environment_shadow));
+  CHECK(planned(alone->renderer, "environment shadows"));
+  CHECK(alone->renderer.scene.lights.empty());
+  look = Look(), look.environment = EnvironmentChoice::none;
+  CHECK(same_picture(picture_of(*rendered(studio, look)), picture_of(*plain)));
+  CHECK_FALSE(same_picture(picture_of(*test), picture_of(*plain)));
 }

@@ -184,6 +184,12 @@ TEST_CASE("plan_effects_shadow_what_an_environment_lights") {
   CHECK(reason_with([](Settings* t) { t->selective_contrast = 0.1f; }) == "selective rendering interpolates pixels");
   CHECK(reason_with([](Settings* t) { t->resolution = Resolution::half; }) == "undersampling reconstructs pixels");
   CHECK(reason_with([](Settings* t) { t->forced_off = bit(Effect::environment); }) == "no environment");
+  s->scene.info.default_lights = 1;
+  CHECK(reason_with([](Settings*) {}).find(" are diffuse") != std::string::npos);  // a studio without lights
+  const Light key;
+  s->scene.lights = {&key, 1};
+  CHECK(reason_with([](Settings*) {}) == "the default lights cast shadows");
+  s->scene.info.default_lights = 0;
   const std::uint32_t stored[1] = {kNone};
   s->scene.radiosity_triangles = {stored, 1};
   CHECK(reason_with([](Settings*) {}) == "radiosity stores them");
