@@ -123,6 +123,7 @@ void light_scene(Renderer* renderer) {
   frame.left_out_max = 2 * kHalfLevel * renderer->settings.cut_off_levels / renderer->exposure;
   const bool branches = renderer->settings.ray_depth > 0 && has_branches(opened_scene(*renderer));
   frame.left_out_slope = branches ? kLevelSlope * frame.left_out_max * renderer->exposure : 0;
+  CHECK_GE(frame.left_out_max, 0);
   frame.dark_radiance = kDarkLevels / renderer->exposure;
 }
 

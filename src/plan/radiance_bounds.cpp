@@ -278,6 +278,7 @@ float one_in_box(const void* context, const Box& box) { return most_in_box(conte
 
 // The cell and a sixteenth of it around: more than hits and rays' origins are off by rounding.
 Box box_of_cell(const Box& bounds, int region) {
+  CHECK(region >= 0 && region < kRegionCount);
   Box cell;
   for (int axis = 0; axis < 3; ++axis, region /= kRegionSide) {
     const float size = (bounds.high[axis] - bounds.low[axis]) / kRegionSide;
@@ -290,6 +291,7 @@ Box box_of_cell(const Box& bounds, int region) {
 // Each cell's most becomes that of all cells from there on towards the octant.
 void reach_across(RadianceRegions* regions, int octant, int axis) {
   const int stride = axis == 0 ? 1 : axis == 1 ? kRegionSide : kRegionSide * kRegionSide;
+  CHECK(octant >= 0 && octant < 8 && axis >= 0 && axis < 3);
   const int bit = 1 << octant, step = octant >> axis & 1 ? -stride : stride;
   for (int i = 0; i < kRegionCount; ++i) {
     const int region = step > 0 ? kRegionCount - 1 - i : i, place = region / stride % kRegionSide;
@@ -312,6 +314,8 @@ std::uint32_t hash_of(const RadianceRegions& regions) {
 }  // namespace
 
 void place_radiance_regions(const FrameData& frame, RadianceBounds* bounds, RadianceRegions* regions) {
+  CHECK(bounds != nullptr && regions != nullptr);
+  CHECK(frame.scene != nullptr && frame.accel_info != nullptr);
   Box box = empty_box();
   for (const Vec3& p : frame.positions) box = merge(box, p);
   regions->low = box.low;
