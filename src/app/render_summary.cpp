@@ -57,13 +57,14 @@ void print_summary(const RenderSummary& s) {
   if (counts.rays_left_out)
     std::printf("  %s rays skipped, which could change a sample by at most %.2g of a display level in total\n",
                 grouped(counts.rays_left_out).c_str(),
-                static_cast<double>(counts.left_out_max * renderer.exposure) * 255 * 12.92);
+                static_cast<double>(counts.left_out_share_max * renderer.settings.cut_off_levels));
   if (counts.ended_weight_max >= kEndedWeightTold)
     std::printf(
         "  %s ended at depth %u; the surroundings stand in for what they would see, with a weight of up to %.2g %% of "
-        "a sample\n",
+        "a sample, which differs from one without that end by at most %.2g of white\n",
         counted(counts.rays_ended, "ray").c_str(), renderer.settings.ray_depth,
-        100 * static_cast<double>(counts.ended_weight_max));
+        100 * static_cast<double>(counts.ended_weight_max),
+        static_cast<double>(counts.ended_bound_max * renderer.exposure));
   if (s.servers) print_share(*s.servers, renderer.settings.width);
   if (s.budget) print_budget(*s.budget, s.frame_count == 1);
 }
@@ -87,6 +88,8 @@ Json to_json(const RenderSummary& s) {
           {"left_out_radiance_max", counts.left_out_max},
           {"rays_ended", counts.rays_ended},
           {"ended_weight_max", counts.ended_weight_max},
+          {"ended_radiance_max", counts.ended_bound_max},
+          {"left_out_levels_max", counts.left_out_share_max * renderer.settings.cut_off_levels},
           {"exposure", renderer.exposure},
           {"memory", memory_json(renderer.memory)},
           {"effects", effects_json(renderer.effects)},

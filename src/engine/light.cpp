@@ -10,6 +10,7 @@
 #include "plan/place_point_groups.h"
 #include "plan/place_virtual_lights.h"
 #include "plan/plan_lights.h"
+#include "plan/radiance_bounds.h"
 #include "shade/ambient_gloss.h"
 #include "shade/camera.h"
 #include "shade/filters.h"
@@ -28,9 +29,11 @@
 namespace pocketray {
 namespace {
 
+bool rests(const Renderer& renderer) { return !renderer.pose.positions.count && !renderer.pose.lights.count; }
+
 // Whether the lights of the last frame are still valid: nothing moves, and nothing that they depend on has changed.
 bool is_lit(const Renderer& renderer) {
-  return renderer.lit_mask == renderer.effects.mask && !renderer.pose.positions.count && !renderer.pose.lights.count &&
+  return renderer.lit_mask == renderer.effects.mask && rests(renderer) &&
          same_lights(renderer.lit_settings, renderer.settings);
 }
 
@@ -103,6 +106,11 @@ void light_scene(Renderer* renderer) {
     bool spawns = has(renderer->effects.mask, Effect::mirror) || has(renderer->effects.mask, Effect::refraction) ||
                   has(renderer->effects.mask, Effect::alpha_blend);
     renderer->frame.radiance_bounds = spawns ? radiance_bounds(renderer->frame) : RadianceBounds{};
+    renderer->frame.radiance_regions = nullptr;
+    if (renderer->radiance_regions && has(renderer->effects.mask, Effect::refraction) && rests(*renderer)) {
+      place_radiance_regions(renderer->frame, &renderer->frame.radiance_bounds, renderer->radiance_regions);
+      renderer->frame.radiance_regions = renderer->radiance_regions;
+    }
     renderer->lit_settings = renderer->settings;
     renderer->lit_mask = renderer->effects.mask;
   }
@@ -111,7 +119,12 @@ void light_scene(Renderer* renderer) {
     renderer->frame.find_shadows = find_lamp_tile_shadows;
   const float white = 1 / renderer->exposure;
   renderer->frame.selection = {renderer->settings.selective_contrast, white, kDisplayFlare * white};
-  renderer->frame.left_out_max = 2 * kHalfLevel * renderer->settings.cut_off_levels / renderer->exposure;
+  FrameData& frame = renderer->frame;
+  frame.left_out_max = 2 * kHalfLevel * renderer->settings.cut_off_levels / renderer->exposure;
+  const bool branches = renderer->settings.ray_depth > 0 && has_branches(opened_scene(*renderer));
+  frame.left_out_slope = branches ? kLevelSlope * frame.left_out_max * renderer->exposure : 0;
+  CHECK_GE(frame.left_out_max, 0);
+  frame.dark_radiance = kDarkLevels / renderer->exposure;
 }
 
 void make_tracers(Renderer* renderer) {

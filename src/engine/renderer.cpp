@@ -17,6 +17,7 @@
 #include "plan/plan_effects.h"
 #include "plan/plan_lights.h"
 #include "plan/plan_scene.h"
+#include "plan/radiance_bounds.h"
 #include "shade/camera.h"
 #include "shade/interleaved.h"
 #include "shade/lattice.h"
@@ -188,6 +189,8 @@ Status build_renderer_unexposed(Renderer* renderer) {
     renderer->point_order = arena_array<std::uint8_t>(&renderer->persistent_arena, points);
     renderer->point_place = arena_array<std::uint8_t>(&renderer->persistent_arena, points);
   }
+  if (has_radiance_regions(renderer->scene))
+    renderer->radiance_regions = arena_array<RadianceRegions>(&renderer->persistent_arena, 1).data;
   if (const std::uint32_t polygons = light_polygon_count(renderer->scene, renderer->effects.mask))
     renderer->light_polygons = arena_array<LightPolygon>(&renderer->persistent_arena, polygons);
   if (const std::uint32_t lights = renderer->selected_light_max) {
@@ -297,7 +300,9 @@ Tracer total_counts(const Renderer& renderer) {
     total.ended_weight_max = std::max(total.ended_weight_max, t.ended_weight_max);
     total.stats.nodes += t.stats.nodes;
     total.stats.triangles += t.stats.triangles;
-    if (t.left_out_max > total.left_out_max) total.left_out_max = t.left_out_max;
+    total.left_out_max = std::max(total.left_out_max, t.left_out_max);
+    total.left_out_share_max = std::max(total.left_out_share_max, t.left_out_share_max);
+    total.ended_bound_max = std::max(total.ended_bound_max, t.ended_bound_max);
   }
   return total;
 }

@@ -13,9 +13,4 @@ Status light_point_count(const Scene& scene, const Settings& settings, EffectMas
 // however dim they are now. Allocates nothing.
 void place_lights(Array<const Light> lights, Array<const Material> lamps, Array<LightPoint> points, FrameData* frame);
 
-// Upper bounds of the radiance along any ray, for the cut-off: emission, direct light at the smallest distance of every
-// light from the geometry, and the most that up to ray_depth interreflections at the strongest mirror can add; rounded
-// up by at most an eighth. Infinite if unbounded.
-RadianceBounds radiance_bounds(const FrameData& frame);
-
 }  // namespace pocketray

@@ -157,10 +157,17 @@ using StripFunction = void (*)(Tracer* tracer, const TileStrip& strip, const Pix
 // Upper bounds of the radiance along a ray, by the number of reflections and refractions that it may still meet.
 struct RadianceBounds {
   float after[kRayDepthMax + 1] = {};
+  float passed_on[kRayDepthMax + 1] = {};  // by surfaces that mirror or transmit
+  std::uint32_t regions_hash = 0;
 
-  bool operator==(const RadianceBounds& other) const { return std::equal(after, std::end(after), other.after); }
+  bool operator==(const RadianceBounds& other) const {
+    return std::equal(after, std::end(after), other.after) &&
+           std::equal(passed_on, std::end(passed_on), other.passed_on) && regions_hash == other.regions_hash;
+  }
   bool operator!=(const RadianceBounds& other) const { return !(*this == other); }
 };
+
+struct RadianceRegions;
 
 // What selective rendering interpolates; selective.h.
 struct Selection {
@@ -203,9 +210,12 @@ struct FrameData {
   bool filters_read_point = false;                                              // HitFilter::reads_point
   bool filter_every_shadow = false;  // false: only shadow rays to area lights need the filter
   RadianceBounds radiance_bounds;
-  Vec3 beyond_depth = {0, 0, 0};  // radiance that stands in for rays beyond Settings::ray_depth
+  const RadianceRegions* radiance_regions = nullptr;  // null: the bounds are the same everywhere
+  Vec3 beyond_depth = {0, 0, 0};                      // radiance that stands in for rays beyond Settings::ray_depth
   Selection selection;
-  float left_out_max = 0;  // radiance that may be skipped of one sample
+  float left_out_max = 0;    // radiance that may be skipped of a dark sample
+  float left_out_slope = 0;  // the same grows by this times the radiance of the darkest channel that exceeds
+  float dark_radiance = 0;   // this; see branches.h
   IndirectData indirect;
   const EnvironmentLights* environment_lights = nullptr;  // set with Effect::environment_shadow
   Hit* first_hits = nullptr;  // receives the first hits, width × height for each sample in turn; null: not kept
@@ -259,23 +269,36 @@ struct TestedPoints {
   PointBits traced, met, settled, blocked;
 };
 
+// What is known of the sample being traced where paths branch; branches.h.
+struct Branching {
+  float allowed = 0;  // radiance that may be skipped of it
+  float certain = 0;  // of what it has for certain, the darkest channel; less FrameData::dark_radiance
+  float share = 1;    // of `allowed` that one ray may take
+  float ended = 0;    // by how much rays that ended could change it, at most
+  float slope = 0;    // of `allowed` by `certain`
+};
+
 // One thread's state; counters accumulate. Aligned so that threads do not share a cache line.
 struct alignas(64) Tracer {
   const FrameData* frame = nullptr;
   std::uint64_t rays[kRayKindCount] = {};
   std::uint64_t rays_left_out = 0, rays_ended = 0;
   TraceStats stats;
-  const Surface* first_surface = nullptr;      // of the sample being shaded, or null: not known
-  const TileShadows* tile_shadows = nullptr;   // of the current tile, or null
-  std::uint32_t tile_pixel = 0;                // index in the tile of the pixel being shaded
-  float budget = 0;                            // radiance that may still be skipped of the current sample
+  const Surface* first_surface = nullptr;     // of the sample being shaded, or null: not known
+  const TileShadows* tile_shadows = nullptr;  // of the current tile, or null
+  std::uint32_t tile_pixel = 0;               // index in the tile of the pixel being shaded
+  float budget = 0;                           // radiance that may still be skipped of the current sample
+  float skip_max = 0;                         // the same of one ray
+  Branching branching;
   CornerRow corner_rows[4];                    // of selective rendering
   std::uint32_t corner_row_count = 0;          // that are kept: 0, 2 or 4
   Array<InterleavedPixel> interleaved_pixels;  // of the row of tiles above; empty: not planned
   LatticeWindow window;                        // empty: not planned
   Array<LightEntry> light_entries;             // scratch of source selection; empty: not planned
   float left_out_max = 0;                      // largest sum skipped of one sample so far
+  float left_out_share_max = 0;                // the same as a share of what may be skipped of it
   float ended_weight_max = 0;                  // largest throughput of a ray that ended by the maximum depth
+  float ended_bound_max = 0;                   // by how much such rays could change a sample, at most
   TestedPoints tested_points = {{0, 0, 0}, {0, 0, 0}, 0, ~0u, false, {}, {}, {}, {}};
 };
 

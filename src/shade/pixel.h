@@ -12,11 +12,14 @@ inline Ray pixel_ray(const FrameData& frame, std::uint32_t column, std::uint32_t
 // The sample whose ray first hits `hit`; `surface` is there, or null.
 inline Vec3 sample_radiance(Tracer* tracer, const Ray& ray, const Hit& hit, const Surface* surface) {
   const FrameData& frame = *tracer->frame;
-  tracer->budget = frame.left_out_max;
+  tracer->budget = tracer->skip_max = tracer->branching.allowed = frame.left_out_max;
+  tracer->branching.ended = 0;
   ++tracer->rays[static_cast<int>(RayKind::primary)];
   Vec3 radiance = frame.radiance(tracer, ray, hit, surface);
-  float left_out = frame.left_out_max - tracer->budget;
+  const float allowed = tracer->branching.allowed, left_out = allowed - tracer->budget;
   if (left_out > tracer->left_out_max) tracer->left_out_max = left_out;
+  if (left_out > tracer->left_out_share_max * allowed) tracer->left_out_share_max = left_out / allowed;
+  if (tracer->branching.ended > tracer->ended_bound_max) tracer->ended_bound_max = tracer->branching.ended;
   return radiance;
 }
 

@@ -7,6 +7,7 @@
 
 #include "base/check.h"
 #include "indirect/environment.h"
+#include "shade/branches.h"
 #include "shade/contact.h"
 #include "shade/direct.h"
 #include "shade/instantiate.h"
@@ -45,9 +46,21 @@ Hit on_path(Hit hit, const Path<mask>& path) {
 template <EffectMask mask>
 Vec3 radiance(Tracer* tracer, const Ray& ray, const Path<mask>& path);
 
-// Of any ray after `depth` reflections and refractions.
-inline float radiance_bound(const FrameData& frame, std::uint32_t depth) {
-  return frame.radiance_bounds.after[frame.settings.ray_depth - depth];
+// Whether a surface can both reflect and transmit, or has a coat that reflects besides.
+template <EffectMask mask>
+constexpr bool kBranches = has(mask, Effect::refraction) || has(mask, Effect::clear_coat);
+
+// Counts a ray that ends by the maximum depth, for which radiance `seen` stands in. What it would see is bounded for
+// kRayDepthMax further reflections and refractions.
+template <bool branches>
+void end_ray(Tracer* tracer, float weight, const Vec3& seen, const Vec3& origin, const Vec3& direction) {
+  const FrameData& frame = *tracer->frame;
+  ++tracer->rays_ended;
+  tracer->ended_weight_max = std::max(tracer->ended_weight_max, weight);
+  float bound = frame.radiance_bounds.after[kRayDepthMax];
+  if constexpr (branches) bound = radiance_bound(frame, kRayDepthMax, origin, direction);
+  const float least = std::min(seen.x, std::min(seen.y, seen.z));
+  if (weight > 0) tracer->branching.ended += weight * std::max(max_component(seen), bound - least);
 }
 
 // Whether the frame has an environment: --effects can force the effect on without one.
@@ -71,17 +84,21 @@ Vec3 spawn(Tracer* tracer, RayKind kind, const Surface& s, const Vec3& direction
            const Vec3& weight) {
   const FrameData& frame = *tracer->frame;
   if (path.depth >= frame.settings.ray_depth) {
-    ++tracer->rays_ended;
-    tracer->ended_weight_max = std::max(tracer->ended_weight_max, max_component(path.weight * weight));
-    return weight * (has_environment<mask>(frame) ? radiance_behind<mask>(frame, direction) : frame.beyond_depth);
+    const Vec3 seen = has_environment<mask>(frame) ? radiance_behind<mask>(frame, direction) : frame.beyond_depth;
+    end_ray<kBranches<mask>>(tracer, max_component(path.weight * weight), seen, safe_origin(s, side), direction);
+    return weight * seen;
   }
   Path<mask> next = path;
   next.weight = path.weight * weight;
   next.depth = path.depth + 1;
   float most = max_component(next.weight);
-  if (!(most > 0) || leave_out(tracer, most * radiance_bound(frame, next.depth))) return {0, 0, 0};
+  const std::uint32_t further = frame.settings.ray_depth - next.depth;
+  if (!(most > 0) || leave_out(tracer, most * frame.radiance_bounds.after[further])) return {0, 0, 0};
+  const Ray ray = {safe_origin(s, side), direction, __builtin_inff()};
+  if constexpr (kBranches<mask>)
+    if (leave_out(tracer, most * radiance_bound(frame, further, ray.origin, direction))) return {0, 0, 0};
   ++tracer->rays[static_cast<int>(kind)];
-  return weight * radiance<mask>(tracer, {safe_origin(s, side), direction, __builtin_inff()}, next);
+  return weight * radiance<mask>(tracer, ray, next);
 }
 
 // The perfect mirror. If the normal would reflect the ray below the surface, the geometric normal is used.
@@ -115,10 +132,15 @@ Vec3 dielectric(Tracer* tracer, const Ray& ray, const Surface& s, const Contact&
   float reflected = fresnel(cos_i, eta, &cos_t);
   if (eta == 1) reflected = 0, cos_t = cos_i;  // touching bodies of equal index: no reflection from rounding
   if (m.thin && reflected < 1) reflected = 2 * reflected / (1 + reflected);  // both faces of the sheet, all orders
-  Vec3 sum = {0, 0, 0};
-  Vec3 turned = mirrored + Vec3{reflected, reflected, reflected};
-  if (!is_zero(turned)) sum += mirror<mask>(tracer, RayKind::mirror, ray, s, s.normal, path, turned);
-  if (reflected < 1) {
+  const Vec3 turned = mirrored + Vec3{reflected, reflected, reflected};
+  Vec3 by_mirror = {0, 0, 0}, passed = {0, 0, 0};
+  const bool mirror_first = max_component(turned) > 1 - reflected;
+  for (bool mirrors : {mirror_first, !mirror_first}) {  // the stronger branch first
+    if (mirrors) {
+      if (!is_zero(turned)) by_mirror = mirror<mask>(tracer, RayKind::mirror, ray, s, s.normal, path, turned);
+      continue;
+    }
+    if (!(reflected < 1)) continue;
     Vec3 tint = {1, 1, 1};
     for (std::uint32_t i = 0; i < contact.count; ++i) {
       const Material& entered = scene.materials[contact.face[i].material];
@@ -127,9 +149,9 @@ Vec3 dielectric(Tracer* tracer, const Ray& ray, const Surface& s, const Contact&
     }
     Vec3 direction = m.thin ? ray.direction : normalize(refract(ray.direction, n, eta, cos_i, cos_t));
     if (!(dot(direction, s.geometric) < 0)) direction = ray.direction;  // the shading normal deviates too far
-    sum += spawn<mask>(tracer, RayKind::refraction, s, direction, -1, beyond, tint * (1 - reflected));
+    passed = spawn<mask>(tracer, RayKind::refraction, s, direction, -1, beyond, tint * (1 - reflected));
   }
-  return sum;
+  return by_mirror + passed;
 }
 
 // What a coated surface mirrors and transmits: the base's reflected ray is the coat's, too, where they have one normal,
@@ -167,6 +189,7 @@ inline Vec3 shade_lobes(Tracer* tracer, const Ray& ray, const Surface& s, const 
     else
       sum += direct_light<mask>(tracer, s, m, -ray.direction, path.weight);
   }
+  if constexpr (kBranches<mask>) add_certain(tracer, path.weight * sum);
   Vec3 mirrored = {0, 0, 0};
   if constexpr (has(mask, Effect::mirror)) {
     if (!is_zero(m.mirror)) {
@@ -234,7 +257,8 @@ bool blend_layers(Tracer* tracer, const Ray& ray, const Contact& contact, Vec3* 
     path->weight = path->weight * (1 - alpha);
   }
   float most = max_component(path->weight);
-  return !any || (most > 0 && !leave_out(tracer, most * radiance_bound(frame, path->depth)));
+  const std::uint32_t further = frame.settings.ray_depth - path->depth;
+  return !any || (most > 0 && !leave_out(tracer, most * frame.radiance_bounds.after[further]));
 }
 
 // The face that a ray meets behind the blending surfaces of a contact: an opaque one, else a body that it enters or
@@ -262,7 +286,11 @@ Vec3 radiance_from(Tracer* tracer, Ray ray, Hit hit, const Surface* first, Path<
   Vec3 sum = {0, 0, 0}, carried = {1, 1, 1};  // throughput of the blended surfaces
   for (std::uint32_t layer = 0; layer < kTransparentLayerMax; ++layer) {
     if (layer > 0) frame.accel_info->closest(frame.accel, ray, filter, &hit, &tracer->stats);
-    if (hit.triangle == kNoTriangle) return sum + carried * radiance_behind<mask>(frame, ray.direction);
+    if (hit.triangle == kNoTriangle) {
+      const Vec3 behind = radiance_behind<mask>(frame, ray.direction);
+      if constexpr (kBranches<mask>) add_certain(tracer, path.weight * behind);
+      return sum + carried * behind;
+    }
     if constexpr (has(mask, Effect::mip_map)) path.distance += hit.t;
     Surface found;
     const Surface* s = first;
@@ -313,6 +341,7 @@ Vec3 primary_radiance(Tracer* tracer, const Ray& ray, const Hit& hit, const Surf
   Path<mask> path = {};
   path.weight = {1, 1, 1};
   if constexpr (has(mask, Effect::refraction)) path.media = tracer->frame->eye_media;
+  if constexpr (kBranches<mask>) begin_branching(tracer);
   return radiance_from<mask>(tracer, ray, hit, surface, path);
 }
 

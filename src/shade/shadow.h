@@ -1,5 +1,7 @@
 // Shadow rays, and the light that passes what is transparent.
 #pragma once
+#include <algorithm>
+
 #include "base/fmath.h"
 #include "effect/effect_probe.h"
 #include "shade/contact.h"
@@ -32,8 +34,9 @@ constexpr EffectMask kPassageEffects = bit(Effect::refraction) | bit(Effect::abs
 // Whether to skip a contribution of at most `bound`: all that is skipped of a sample stays below half the narrowest
 // display level, so no pixel changes by more than one level.
 inline bool leave_out(Tracer* tracer, float bound) {
-  if (!(bound <= tracer->budget)) return false;
+  if (!(bound <= tracer->skip_max)) return false;
   tracer->budget -= bound;
+  tracer->skip_max = std::min(tracer->skip_max, tracer->budget);
   ++tracer->rays_left_out;
   return true;
 }

@@ -72,6 +72,8 @@ TEST_CASE("picture_is_independent_of_threads") {
       CHECK(std::memcmp(total.rays, counts.rays, sizeof counts.rays) == 0);
       CHECK(total.rays_left_out == counts.rays_left_out);
       CHECK(total.left_out_max == counts.left_out_max);
+      CHECK(total.left_out_share_max == counts.left_out_share_max);
+      CHECK(total.ended_bound_max == counts.ended_bound_max);
     }
   }
 }

@@ -8,6 +8,7 @@
 #include "accel/accel_list.h"
 #include "base/limits.h"
 #include "plan/plan_lights.h"
+#include "plan/radiance_bounds.h"
 #include "support/effort.h"
 #include "support/generated_scene.h"
 
@@ -249,7 +250,7 @@ TEST_CASE("plan_lights_radiance_bound_knows_both_sides_of_a_light") {
 }
 
 // Goal: the radiance bound holds where a lamp's closed form exceeds the light of its points. Method: a plate close to
-// the corner of a wide lamp of one point, whose light is known: .8/π · 2 · a quarter of π.
+// the corner of a wide lamp of one point, whose light is known: .8/π · 2 · a quarter of π, and ambient light besides.
 TEST_CASE("plan_lights_radiance_bound_of_a_wide_lamp") {
   GeneratedScene s;
   Material plate, wide;
@@ -258,6 +259,7 @@ TEST_CASE("plan_lights_radiance_bound_of_a_wide_lamp") {
   add_quad(&s, {-8, 8, 2}, {8, 8, 2}, {8, -8, 2}, {-8, -8, 2}, add_material(&s, wide));
   add_quad(&s, {7.9f, 7.9f, 1.99f}, {8, 7.9f, 1.99f}, {8, 8, 1.99f}, {7.9f, 8, 1.99f}, add_material(&s, plate));
   aim(&s, {0, -3, 1}, {0, 0, 0}, 60);
+  s.scene.info.ambient = {2.5f, 2.5f, 2.5f};
   s.bind();
   Settings settings = settings_for(0, 4, 3);
   settings.points_per_area_light = 1;

@@ -117,7 +117,8 @@ TEST_CASE("environment_is_within_the_bound_of_radiance") {
     auto cut = make_renderer(s->scene, settings);
     REQUIRE(render_frame(&cut->renderer, 0).ok);
     CHECK(total_counts(cut->renderer).rays_left_out > 0);
-    const float most = cut->renderer.frame.left_out_max;
+    const float most = total_counts(cut->renderer).left_out_max;
+    CHECK(total_counts(cut->renderer).left_out_share_max <= 1.00001f);
     const float bound = whole->renderer.frame.radiance_bounds.after[settings.ray_depth];
     for (std::uint32_t i = 0; i < settings.width * settings.height; ++i) {
       const Vec3 a = whole->renderer.image[i], b = cut->renderer.image[i];

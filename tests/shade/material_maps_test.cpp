@@ -3,7 +3,7 @@
 
 #include <cstring>
 
-#include "plan/plan_lights.h"
+#include "plan/radiance_bounds.h"
 #include "scene/metallic_roughness.h"
 #include "shade_helpers.h"
 
