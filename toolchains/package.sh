@@ -85,7 +85,8 @@ C
 #!/bin/sh
 cd "$(dirname "$0")" || exit 1
 mkdir -p "$HOME/.pocketray"
-exec ./pocketray view --scenes scenes --log "$HOME/.pocketray/pocketray.log" --screenshots "$HOME/.pocketray" "$@"
+exec ./pocketray view --device rg350 --scenes scenes --log "$HOME/.pocketray/pocketray.log" \
+  --screenshots "$HOME/.pocketray" "$@"
 C
   rm -f "$out/pocketray.opk"
   mksquashfs "$work/opk" "$out/pocketray.opk" -noappend -all-root -comp gzip -quiet -no-progress >/dev/null
