@@ -227,8 +227,13 @@ package: all
 	@toolchains/package.sh "$(DEVICE)" $(POCKETRAY) build/pocketray build/packages
 
 # Counts instructions under emulation. JSON=FILE: also writes them; BENCH_OPTIONS='--effects --symbols 20 --scenes cornell'.
-bench-device: configure
+check-bench-class:
 	@[ -n "$(CLASS)" ] || { echo "bench-device: for which device? make bench-device DEVICE=armhf" >&2; exit 1; }
+	@classes=$$(python3 tests/bench/device/bench_device.py --classes) && case " $$classes " in *" $(CLASS) "*) ;; \
+	  *) echo "bench-device: programs of the class $(CLASS) cannot be counted: DEVICE= is a device or one of $$classes" >&2; exit 1 ;; \
+	esac
+
+bench-device: check-bench-class configure
 	@$(MAKE) --no-print-directory DEVICE= CROSS_PREFIX= all >&2
 	@cmake --build $(BUILD) -j$(JOBS) --target pocketray >&2
 	@python3 tests/bench/device/bench_device.py $(CLASS) $(POCKETRAY) build/pocketray $(JSON:%=--json %) $(BENCH_OPTIONS)
