@@ -144,6 +144,45 @@ TEST_CASE("evdev_releases_buttons_when_events_are_lost_or_a_device_goes") {
   CHECK(pad.taken() == "+b");
 }
 
+// Goal: a pad or keyboard that comes after the start works within a second, and again after being unplugged; one that
+// fails but stays does not release the others' buttons every second. Method: devices that come, fail, go and come back.
+TEST_CASE("evdev_finds_devices_that_come_later") {
+  Pad pad(1);
+  auto wait = [&](std::uint64_t duration) { pad.machine.clock_ns += duration; };
+  pad.machine.inputs.resize(2);
+  pad.machine.inputs[1].hat = true;
+  pad.send(EV_KEY, BTN_A, 1, 1);
+  pad.send(EV_ABS, ABS_HAT0X, 1, 1);
+  wait(999'000'000);
+  CHECK(pad.taken() == "");
+  CHECK(pad.machine.files_open == 1);
+  wait(1'000'000);
+  CHECK(pad.taken() == "+a +right");
+  CHECK(pad.machine.files_open == 2);
+  pad.send(EV_KEY, KEY_Z, 1);
+  CHECK(pad.taken() == "+b");
+  pad.machine.inputs[1].gone = true;
+  CHECK(pad.taken() == "-right -a -b");
+  pad.send(EV_KEY, KEY_Z, 1);
+  CHECK(pad.taken() == "+b");
+  for (int second = 0; second < 3; ++second) {
+    wait(1'000'000'000);
+    CHECK(pad.taken() == "");
+    CHECK(pad.machine.files_open == 1);
+  }
+  pad.machine.inputs[1].absent = true;
+  wait(1'000'000'000);
+  CHECK(pad.taken() == "");
+  pad.machine.inputs[1] = recorded::InputDevice();
+  pad.send(EV_KEY, BTN_A, 1, 1);
+  wait(1'000'000'000);
+  CHECK(pad.taken() == "+a");
+  CHECK(pad.machine.files_open == 2);
+  wait(1'000'000'000);
+  CHECK(pad.taken() == "");
+  CHECK(pad.machine.files_open == 2);
+}
+
 // Goal: a device that floods us with irrelevant events does not block poll(). Method: 10,000 movements, then a key.
 TEST_CASE("evdev_poll_is_bounded_under_a_flood") {
   Pad pad(1);
