@@ -35,7 +35,7 @@ ifneq ($(CROSS_PREFIX),)
   override CLASS := $(or $(CLASS),cross)
 endif
 ifneq ($(CLASS),)
-  ifneq ($(shell toolchains/compiler.sh $(CLASS) $(CROSS_PREFIX) >&2 || echo bad),)
+  ifneq ($(shell toolchains/compiler.sh $(CLASS) "$(CROSS_PREFIX)" "$(SYSROOT)" >&2 || echo bad),)
     $(error no compiler for $(CLASS): see above)
   endif
 endif
@@ -284,3 +284,5 @@ help:
 	@echo "make install      install into PREFIX=$(PREFIX) (and DESTDIR)"
 	@echo "make clean        remove build/ and build-*/"
 	@echo "DEVICE=x          build for a device or CPU class; tests then run under qemu-user"
+	@echo "CROSS_PREFIX=x-   build with the compiler x-g++, for DEVICE= or for its own CPU, which CROSS_FLAGS= selects;"
+	@echo "                  SYSROOT=, ZLIB= and MBEDTLS= are folders of its C library, zlib and mbedTLS"

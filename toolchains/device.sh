@@ -10,7 +10,7 @@ done
 [ "$1" != portmaster ] || { echo aarch64; exit 0; }  # packages for many devices
 name=${1//-/_}
 file=platform/devices/$name.h
-if grep -qs 'Device k' "$file"; then
+if grep -qsE 'Device k\w+ =' "$file"; then
   class=$(grep -oE '"(armhf|armel|aarch64|armv4t|armv6|armv7|mips32)"' "$file" | head -n 1 | tr -d '"' || true)
   echo "${class:-desktop}"
   exit 0
