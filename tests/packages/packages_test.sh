@@ -21,7 +21,9 @@ missing=
 for tool in zip unzip mksquashfs unsquashfs python3; do command -v $tool >/dev/null || missing+=" $tool"; done
 [ -z "$missing" ] || { echo "skipped: this system has no$missing"; exit 77; }
 
-package() { check "package_$1" bash "$root/toolchains/package.sh" "$1" "$program" "$program" "$work/packages"; }
+package() {  # DEVICE [SDL2-PROGRAM]
+  check "package_$1" bash "$root/toolchains/package.sh" "$1" "$program" "$program" "$work/packages" ${2:+"$2"}
+}
 
 # The program, runnable, and scenes with thumbnails that the viewer takes.
 has_program() {  # FOLDER NAME
@@ -103,7 +105,13 @@ chmod -R u+w "$work/opk"
 # Its kernel's arch/mips/boot/dts/ingenic/bits/gcw0-base.dtsi: Ctrl, Alt, Space, Shift, Tab, Backspace, Enter, Esc.
 has_keys "$work/opk/launch.sh" rg350 "103 108 105 106 29 56 57 42 15 14 28 1"
 
-package portmaster
+# In place of the program for SDL2, one that says it ran.
+cat >"$work/sdl2" <<'C'
+#!/bin/sh
+echo "$1" >>sdl2-ran
+[ ! -e broken ] && exec ./pocketray.aarch64 "$@"
+C
+package portmaster "$work/sdl2"
 mkdir -p "$work/roms/ports"
 check port_unpacks unzip -q "$work/packages/pocketray.zip" -d "$work/roms/ports"
 ports=$work/roms/ports
@@ -147,6 +155,13 @@ GPTOKEYB=true
 get_controls() { :; }
 pm_finish() { :; }
 C
+starts "$ports/pocketray/log.txt" "$ports/Pocketray.sh" XDG_DATA_HOME="$work/data"
+check port_uses_sdl2 test "$(tr '\n' ' ' <"$ports/pocketray/sdl2-ran")" = "--version view "
+touch "$ports/pocketray/broken"
+rm "$ports/pocketray/log.txt" "$ports/pocketray/sdl2-ran"
+starts "$ports/pocketray/log.txt" "$ports/Pocketray.sh" XDG_DATA_HOME="$work/data"
+check port_falls_back_to_the_framebuffer test "$(cat "$ports/pocketray/sdl2-ran")" = "--version"
+rm "$ports/pocketray/pocketray-sdl2.aarch64"
 starts "$ports/pocketray/log.txt" "$ports/Pocketray.sh" XDG_DATA_HOME="$work/data"
 
 check unknown_launchers_are_refused bash -c '! bash "$1/toolchains/package.sh" gp2x "$2" "$2" "$3" 2>&1 | grep -v "choose from"' - \
