@@ -224,7 +224,11 @@ mach-bands: setup-tests configure
 # bakes their scenes.
 package: all
 	@toolchains/setup.sh desktop package && $(MAKE) -s DEVICE= CROSS_PREFIX=
-	@toolchains/package.sh "$(DEVICE)" $(POCKETRAY) build/pocketray build/packages
+ifeq ($(DEVICE),portmaster)
+	@toolchains/sdl2.sh $(CLASS) $(BUILD)-sdl2 && cmake --build $(BUILD)-sdl2 -j$(JOBS) --target pocketray
+endif
+	@toolchains/package.sh "$(DEVICE)" $(POCKETRAY) build/pocketray build/packages \
+	  $(if $(filter portmaster,$(DEVICE)),$(BUILD)-sdl2/pocketray)
 
 # Counts instructions under emulation. JSON=FILE: also writes them; BENCH_OPTIONS='--effects --symbols 20 --scenes cornell'.
 check-bench-class:
