@@ -35,7 +35,7 @@ ifneq ($(CROSS_PREFIX),)
   override CLASS := $(or $(CLASS),cross)
 endif
 ifneq ($(CLASS),)
-  ifneq ($(shell toolchains/compiler.sh $(CLASS) $(CROSS_PREFIX) >&2 || echo bad),)
+  ifneq ($(shell toolchains/compiler.sh $(CLASS) "$(CROSS_PREFIX)" "$(SYSROOT)" >&2 || echo bad),)
     $(error no compiler for $(CLASS): see above)
   endif
 endif
@@ -224,11 +224,20 @@ mach-bands: setup-tests configure
 # bakes their scenes.
 package: all
 	@toolchains/setup.sh desktop package && $(MAKE) -s DEVICE= CROSS_PREFIX=
-	@toolchains/package.sh "$(DEVICE)" $(POCKETRAY) build/pocketray build/packages
+ifeq ($(DEVICE),portmaster)
+	@toolchains/sdl2.sh $(CLASS) $(BUILD)-sdl2 && cmake --build $(BUILD)-sdl2 -j$(JOBS) --target pocketray
+endif
+	@toolchains/package.sh "$(DEVICE)" $(POCKETRAY) build/pocketray build/packages \
+	  $(if $(filter portmaster,$(DEVICE)),$(BUILD)-sdl2/pocketray)
 
 # Counts instructions under emulation. JSON=FILE: also writes them; BENCH_OPTIONS='--effects --symbols 20 --scenes cornell'.
-bench-device: configure
+check-bench-class:
 	@[ -n "$(CLASS)" ] || { echo "bench-device: for which device? make bench-device DEVICE=armhf" >&2; exit 1; }
+	@classes=$$(python3 tests/bench/device/bench_device.py --classes) && case " $$classes " in *" $(CLASS) "*) ;; \
+	  *) echo "bench-device: programs of the class $(CLASS) cannot be counted: DEVICE= is a device or one of $$classes" >&2; exit 1 ;; \
+	esac
+
+bench-device: check-bench-class configure
 	@$(MAKE) --no-print-directory DEVICE= CROSS_PREFIX= all >&2
 	@cmake --build $(BUILD) -j$(JOBS) --target pocketray >&2
 	@python3 tests/bench/device/bench_device.py $(CLASS) $(POCKETRAY) build/pocketray $(JSON:%=--json %) $(BENCH_OPTIONS)
@@ -279,3 +288,5 @@ help:
 	@echo "make install      install into PREFIX=$(PREFIX) (and DESTDIR)"
 	@echo "make clean        remove build/ and build-*/"
 	@echo "DEVICE=x          build for a device or CPU class; tests then run under qemu-user"
+	@echo "CROSS_PREFIX=x-   build with the compiler x-g++, for DEVICE= or for its own CPU, which CROSS_FLAGS= selects;"
+	@echo "                  SYSROOT=, ZLIB= and MBEDTLS= are folders of its C library, zlib and mbedTLS"

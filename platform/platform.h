@@ -66,7 +66,7 @@ struct ScreenOptions {
   int width = 320,
       height = 240;         // requested picture, before rotation; a smaller screen reduces it, a larger one centres it
   int rotation = 0;         // 0, 90, 180, 270: degrees clockwise by which the caller rotates the picture on the screen
-  int scale = 0;            // of a window: screen pixels per pixel; 0: as large as fits comfortably
+  int scale = 0;            // screen pixels per pixel; 0: in a window what fits comfortably, otherwise the most
   const char* title = "";   // of a window
   int bits_per_pixel = 0;   // of a window or of no screen: 16 or 32, as on the screen it stands for; 0: 32
   bool blue_first = false;  // blue in the highest bits instead of red

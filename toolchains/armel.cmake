@@ -1,4 +1,4 @@
-# 32-bit ARM without an FPU: ARM926EJ-S (GP2X, F1C100s class); also for ARMv6 boards. Used by `make DEVICE=armel`.
+# 32-bit ARM without an FPU: ARM926EJ-S (F1C100s class). Used by `make DEVICE=armel`.
 set(CMAKE_SYSTEM_PROCESSOR armv5te)
 set(POCKETRAY_TRIPLE arm-linux-gnueabi)
 set(POCKETRAY_CPU_FLAGS "-mcpu=arm926ej-s -mfloat-abi=soft")

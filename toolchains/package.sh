@@ -1,11 +1,12 @@
 #!/usr/bin/env bash
-# package.sh DEVICE PROGRAM DESKTOP FOLDER : writes the packages of a device's launchers to FOLDER: the static PROGRAM, scenes
-# baked by this machine's program DESKTOP, since building them takes an ARM926 a minute, and their thumbnails. Devices:
+# package.sh DEVICE PROGRAM DESKTOP FOLDER [SDL2-PROGRAM] : writes the packages of a device's launchers to FOLDER: the static
+# PROGRAM, scenes baked by this machine's program DESKTOP, since building them takes an ARM926 a minute, and their thumbnails.
+# Devices:
 #   miyoo-mini  OnionUI (App/Pocketray) and MinUI (Tools/miyoomini/Pocketray.pak), zip files to unpack on the memory card
 #   rg350       OpenDingux, pocketray.opk
-#   portmaster  PortMaster, a port in pocketray.zip
+#   portmaster  PortMaster, a port in pocketray.zip, also with SDL2-PROGRAM, for screens without a framebuffer
 set -eu
-device=$1 program=$(realpath "$2") desktop=$(realpath "$3")
+device=$1 program=$(realpath "$2") desktop=$(realpath "$3") with_sdl2=${5:+$(realpath "$5")}
 mkdir -p "$4"
 out=$(realpath "$4")
 root=$(cd "$(dirname "$0")/.." && pwd)
@@ -85,7 +86,8 @@ C
 #!/bin/sh
 cd "$(dirname "$0")" || exit 1
 mkdir -p "$HOME/.pocketray"
-exec ./pocketray view --scenes scenes --log "$HOME/.pocketray/pocketray.log" --screenshots "$HOME/.pocketray" "$@"
+exec ./pocketray view --device rg350 --scenes scenes --log "$HOME/.pocketray/pocketray.log" \
+  --screenshots "$HOME/.pocketray" "$@"
 C
   rm -f "$out/pocketray.opk"
   mksquashfs "$work/opk" "$out/pocketray.opk" -noappend -all-root -comp gzip -quiet -no-progress >/dev/null
@@ -96,6 +98,7 @@ package_portmaster() {
   local port=$work/port files
   files=$port/pocketray
   fill "$files" pocketray.aarch64
+  [ -z "$with_sdl2" ] || install -m 755 "$with_sdl2" "$files/pocketray-sdl2.aarch64"
   mkdir "$files/licenses"
   mv "$files/LICENSE" "$files/licenses/LICENSE.pocketray.txt"
   "$desktop" render cornell --size 640x480 -o "$port/screenshot.png" >/dev/null
@@ -169,8 +172,11 @@ done
 source "$controlfolder/control.txt"
 get_controls
 cd "/$directory/ports/pocketray" || exit 1
-$GPTOKEYB "pocketray.aarch64" -c "./pocketray.gptk" &
-./pocketray.aarch64 view --scenes scenes --log log.txt "$@"
+# With the system's SDL2 if it and the C library suit; otherwise alone on the framebuffer.
+program=pocketray.aarch64
+./pocketray-sdl2.aarch64 --version >/dev/null 2>&1 && program=pocketray-sdl2.aarch64
+$GPTOKEYB "$program" -c "./pocketray.gptk" &
+"./$program" view --scenes scenes --log log.txt "$@"
 pm_finish
 C
   pack pocketray.zip "$port"

@@ -14,23 +14,24 @@ constexpr std::uint16_t kEscape = 1, kBackspace = 14, kTab = 15, kE = 18, kT = 2
 
 // Where nobody has measured `slowdown`, it is estimated: clocks per pixel / clock rate, divided by 488 and 515 ns, the
 // cost of the scenes cornell and seesaw at 320 × 240 on one core of an AMD EPYC (README.md), as the geometric mean of
-// both. `make bench-device` counts the clocks, as instructions weighted by class: 38,000 and 56,500 in the armel build,
-// whose floats are software, 7,550 and 10,500 in the armhf build (tests/bench/device/expected.json). The weights are
-// guesses and leave out cache misses; latency and jitter are guesses where no source is named.
+// both. `make bench-device` counts the clocks, as instructions weighted by class: 39,000 and 56,000 in the armel build,
+// whose floats are software, 7,000 and 10,300 in the armhf build (tests/bench/device/: expected.json,
+// profiles_test.py). The weights are guesses and leave out cache misses; latency and jitter are guesses where no source
+// is named.
 //
 // Decoding takes an ARM926 35 clocks a pixel and 900 a byte of code, a Cortex-A7 24 and 870, an x86-64 core 1.1 ns and
-// 92 (tests/bench/device/codec_cost.py, with frames of cornell and statue in both formats). Here an ARM920T and an
-// ARM1176 count as an ARM926, and the tablet takes longer than x86-64 by its slowdown.
+// 92 (tests/bench/device/codec_cost.py, with frames of cornell and statue in both formats). Here an ARM920T, an
+// ARM1176 and a JZ4770 count as an ARM926, and the tablet takes longer than x86-64 by its slowdown.
 //
 // Preparing a frame of a moving scene takes an ARM926 3,100 clocks a moving triangle and 5,400 a moving vertex, a
 // Cortex-A7 800 and 350, an x86-64 core 75 and 24 ns (tests/bench/device/prepare_cost.py; `bench seesaw` for x86-64).
-//
-// A byte by radio takes 1,096 nJ: receiving by Wi-Fi takes a phone 137 mW for each Mbit/s [Huang et al. 2012, "A Close
+// An ARM1176 and a JZ4770 count as a Cortex-A7: 1,015 and 984 clocks a triangle of seesaw, its vertices included. A
+// byte by radio takes 1,096 nJ: receiving by Wi-Fi takes a phone 137 mW for each Mbit/s [Huang et al. 2012, "A Close
 // Examination of Performance and Power Characteristics of 4G LTE Networks", table 4].
 struct Device {
   const char* name;         // as on the command line
   const char* description;  // one line
-  const char* cpu_class;    // build to use: armel, armhf, aarch64, x86-64
+  const char* cpu_class;    // build to use: a class of devices/README.md, or x86-64
   int screen_width, screen_height;
   int bits_per_pixel;
   const char* channel_order;  // rgb: red in the highest bits; bgr: blue. The driver's report overrides it.

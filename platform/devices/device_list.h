@@ -5,11 +5,12 @@
 #include "platform/devices/miyoo.h"
 #include "platform/devices/miyoo_mini.h"
 #include "platform/devices/pi_zero.h"
+#include "platform/devices/rg350.h"
 #include "platform/devices/tablet.h"
 
 namespace platform {
 
-constexpr Device kDevices[] = {kGp2x, kMiyoo, kMiyooMini, kPiZero, kTablet, kDesktop};
+constexpr Device kDevices[] = {kGp2x, kMiyoo, kMiyooMini, kPiZero, kRg350, kTablet, kDesktop};
 constexpr int kDeviceCount = sizeof kDevices / sizeof kDevices[0];
 
 // The device of that name, or null.

@@ -1,15 +1,10 @@
 #pragma once
-#include "platform/devices/device.h"
+#include "platform/devices/opendingux.h"
 
 namespace platform {
 
-// OpenDingux's layout, which the MiyooCFW firmware follows: A Ctrl, B Alt, X Space, Y Shift, L Tab, R Backspace.
-constexpr std::uint16_t kMiyooKeys[] = {key::kUp,          key::kDown,      key::kLeft,  key::kRight,
-                                        key::kLeftControl, key::kLeftAlt,   key::kSpace, key::kLeftShift,
-                                        key::kTab,         key::kBackspace, key::kEnter, key::kEscape};
-
 // Allwinner F1C100s: ARM926EJ-S, 32 MiB in the package (F1C100s datasheet, ch. 1); LCD 320 × 240 RGB565. 408 MHz and
-// up. Also covers BittBoy, PocketGo and PowKiddy V90.
+// up. Also covers BittBoy, PocketGo and PowKiddy V90. The MiyooCFW firmware has the keys of OpenDingux.
 // CPU: the armel build at 408 MHz.
 // Link: a USB stick for 802.11n with one antenna. 16 Mbit/s, from the 10 to 20 that consumer 802.11g and n devices
 // reached in an office (web.luchs.at, "Using 802.11n and WPA2"): its CPU is as slow as theirs. Latency and jitter are
@@ -24,9 +19,9 @@ constexpr Device kMiyoo = {"miyoo",
                            "rgb",
                            0,
                            mebibytes(16),
-                           kMiyooKeys,
+                           kOpenDinguxKeys,
                            1,
-                           226,
+                           228,
                            2'000'000,
                            microseconds(1500),
                            microseconds(2000),

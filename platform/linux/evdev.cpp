@@ -96,6 +96,8 @@ void take_axis(InputQueue* queue, Input* input, std::uint16_t code, int value) {
   }
 }
 
+constexpr std::uint64_t kLookNs = 1'000'000'000;  // chosen: a pad that comes later works at once; 32 calls cost little
+
 void find_axes(const Driver& driver, Input* input) {
   for (int i = 0; i < 4; ++i) {
     input_absinfo range = {};
@@ -107,9 +109,36 @@ void find_axes(const Driver& driver, Input* input) {
   }
 }
 
+// Opens the devices that are not open yet. One that failed is left alone until it has been unplugged.
+void open_inputs(InputQueue* queue) {
+  static_assert(kInputCountMax <= 32, "one bit each");
+  queue->looked_ns = queue->driver->now_ns();
+  for (int i = 0; i < kInputCountMax; ++i) {
+    std::uint32_t bit = 1u << i;
+    if (queue->open_numbers & bit) continue;
+    char path[32];
+    snprintf(path, sizeof path, "/dev/input/event%d", i);
+    Input input;
+    input.number = i;
+    input.file = queue->driver->open(path, O_RDONLY | O_NONBLOCK);
+    if (input.file < 0) {
+      queue->lost_numbers &= ~bit;
+    } else if (queue->lost_numbers & bit) {
+      queue->driver->close(input.file);
+    } else {
+      find_axes(*queue->driver, &input);
+      PLATFORM_CHECK_LT(queue->input_count, kInputCountMax);
+      queue->inputs[queue->input_count++] = input;
+      queue->open_numbers |= bit;
+    }
+  }
+}
+
 void drop_input(InputQueue* queue, int index) {
   PLATFORM_CHECK(index >= 0 && index < queue->input_count);
   queue->driver->close(queue->inputs[index].file);
+  std::uint32_t bit = 1u << queue->inputs[index].number;
+  queue->open_numbers &= ~bit, queue->lost_numbers |= bit;
   queue->inputs[index] = queue->inputs[--queue->input_count];
   release_all(queue);  // the device is gone: its button releases will not arrive
 }
@@ -130,20 +159,12 @@ void input_open(const Driver& driver, const std::uint16_t* keys, InputQueue* que
   *queue = InputQueue();
   queue->driver = &driver;
   queue->keys = keys ? keys : kKeyboard;
-  for (int i = 0; i < kInputCountMax; ++i) {
-    char path[32];
-    snprintf(path, sizeof path, "/dev/input/event%d", i);
-    Input input;
-    input.file = driver.open(path, O_RDONLY | O_NONBLOCK);
-    if (input.file < 0) continue;
-    find_axes(driver, &input);
-    PLATFORM_CHECK_LT(queue->input_count, kInputCountMax);
-    queue->inputs[queue->input_count++] = input;
-  }
+  open_inputs(queue);
 }
 
 bool input_poll(InputQueue* queue, Event* event) {
   PLATFORM_CHECK(event != nullptr && queue->driver != nullptr);
+  if (queue->driver->now_ns() - queue->looked_ns >= kLookNs) open_inputs(queue);
   // Reads events until one matters; a device that never stops sending does not block us.
   for (int round = 0; round < 64 && queue->count == 0 && queue->input_count > 0; ++round) {
     pollfd files[kInputCountMax];

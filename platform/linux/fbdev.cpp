@@ -78,13 +78,62 @@ unsigned char* page_address(const Framebuffer* fb, int page) {
                              static_cast<std::size_t>(fb->line_bytes);
 }
 
+template <typename Pixel>
+void repeat_pixels(const void* from, void* to, int count, int times) {
+  const auto* source = static_cast<const Pixel*>(from);
+  auto* target = static_cast<Pixel*>(to);
+  for (int i = 0; i < count; ++i)
+    for (int k = 0; k < times; ++k) *target++ = source[i];
+}
+
+// Writes a row of the picture with each pixel `scale` times. Old CPUs cannot store across a word.
+void write_row(const Framebuffer& fb, const unsigned char* from, unsigned char* to) {
+  bool aligned = reinterpret_cast<std::uintptr_t>(to) % static_cast<unsigned>(fb.pixel_bytes) == 0;
+  if (fb.scale == 1) {
+    memcpy(to, from, static_cast<std::size_t>(fb.width) * static_cast<std::size_t>(fb.pixel_bytes));
+  } else if (fb.pixel_bytes == 4 && aligned) {
+    repeat_pixels<std::uint32_t>(from, to, fb.width, fb.scale);
+  } else if (fb.pixel_bytes == 2 && aligned) {
+    repeat_pixels<std::uint16_t>(from, to, fb.width, fb.scale);
+  } else {
+    for (int i = 0; i < fb.width * fb.scale; ++i)
+      for (int byte = 0; byte < fb.pixel_bytes; ++byte) *to++ = from[i / fb.scale * fb.pixel_bytes + byte];
+  }
+}
+
+// Rows of the picture to a page that is shown. Each is written `scale` times: reading the screen's memory back is slow.
 void copy_rows(Framebuffer* fb, const unsigned char* from, int from_line_bytes, unsigned char* to, int row_begin,
                int row_end) {
   PLATFORM_CHECK(row_begin >= 0 && row_end <= fb->height);
-  std::size_t bytes = static_cast<std::size_t>(fb->width) * static_cast<std::size_t>(fb->pixel_bytes);
   for (int row = row_begin; row < row_end; ++row)
-    memcpy(to + static_cast<std::ptrdiff_t>(row) * fb->line_bytes,
-           from + static_cast<std::ptrdiff_t>(row) * from_line_bytes, bytes);
+    for (int k = 0; k < fb->scale; ++k)
+      write_row(*fb, from + static_cast<std::ptrdiff_t>(row) * from_line_bytes,
+                to + (static_cast<std::ptrdiff_t>(row) * fb->scale + k) * fb->line_bytes);
+}
+
+// The page to draw into was visible until the flip, which happens within one frame of the request.
+void wait_for_flip(Framebuffer* fb) {
+  std::uint64_t elapsed = fb->driver->now_ns() - fb->panned_ns;
+  std::uint64_t period = vsync_period_ns() ? vsync_period_ns() : kFlipNs;
+  if (elapsed >= period || (vsync_period_ns() && vsync_wait() == VsyncKind::works)) return;
+  elapsed = fb->driver->now_ns() - fb->panned_ns;
+  if (elapsed < kFlipNs) fb->driver->sleep_ns(kFlipNs - elapsed);
+}
+
+// Enlarges the back page onto the hidden one, which shows the frame before the last.
+void draw_hidden_page(Framebuffer* fb, int row_begin, int row_end) {
+  if (fb->frames_drawn > 0) wait_for_flip(fb);
+  int begin = row_begin < fb->stale_begin ? row_begin : fb->stale_begin;
+  int end = row_end > fb->stale_end ? row_end : fb->stale_end;
+  copy_rows(fb, fb->memory, fb->memory_line_bytes, page_address(fb, 1 - fb->page_shown), begin, end);
+  fb->stale_begin = row_begin, fb->stale_end = row_end;
+}
+
+// The most screen pixels per pixel that fit, or fewer if asked for.
+int fitting_scale(const Framebuffer& fb, int screen_width, int screen_height, int wanted) {
+  int most = screen_width / fb.width < screen_height / fb.height ? screen_width / fb.width : screen_height / fb.height;
+  PLATFORM_CHECK_GE(most, 1);
+  return wanted > 0 && wanted < most ? wanted : most;
 }
 
 bool fail(Framebuffer* fb) {
@@ -120,13 +169,15 @@ bool framebuffer_open(const Driver& driver, const ScreenOptions& options, Frameb
     return fail(fb);
   }
 
-  // 2. Place the picture, centred on a larger screen.
+  // 2. Place the picture, enlarged and centred on a larger screen.
   bool turned = options.rotation == 90 || options.rotation == 270;
   int screen_width = static_cast<int>(fb->mode.xres), screen_height = static_cast<int>(fb->mode.yres);
   fb->width = turned ? options.height : options.width;
   fb->height = turned ? options.width : options.height;
   if (fb->width > screen_width) fb->width = screen_width;
   if (fb->height > screen_height) fb->height = screen_height;
+  fb->scale = fitting_scale(*fb, screen_width, screen_height, options.scale);
+  fb->stale_end = fb->height;
   fb->pixel_bytes = static_cast<int>(fb->mode.bits_per_pixel / 8);
   fb->memory = static_cast<unsigned char*>(options.memory);
   fb->memory_line_bytes = (fb->width * fb->pixel_bytes + 3) / 4 * 4;
@@ -150,8 +201,8 @@ bool framebuffer_open(const Driver& driver, const ScreenOptions& options, Frameb
   fb->flips = can_flip(fb, fixed, map_offset);
   unsigned char* shown = fb->map + map_offset + static_cast<std::size_t>(fb->mode.yoffset) * fixed.line_length;
   memset(shown, 0, static_cast<std::size_t>(fixed.line_length) * fb->mode.yres * (fb->flips ? 2 : 1));
-  std::size_t top = static_cast<std::size_t>(screen_height - fb->height) / 2;
-  std::size_t left = fb->mode.xoffset + static_cast<std::size_t>(screen_width - fb->width) / 2;
+  std::size_t top = static_cast<std::size_t>(screen_height - fb->height * fb->scale) / 2;
+  std::size_t left = fb->mode.xoffset + static_cast<std::size_t>(screen_width - fb->width * fb->scale) / 2;
   fb->first_row = shown + top * fixed.line_length + left * static_cast<std::size_t>(fb->pixel_bytes);
   if (fb->flips) fb->vsync = vsync_start(driver, fb->file);
 
@@ -167,16 +218,8 @@ bool framebuffer_open(const Driver& driver, const ScreenOptions& options, Frameb
 
 Page framebuffer_begin_frame(Framebuffer* fb) {
   PLATFORM_CHECK_GE(fb->file, 0);
-  if (!fb->flips) return {fb->memory, fb->memory_line_bytes, fb->frames_drawn > 0 ? 1 : 0};
-  // The page to draw into was visible until the flip, which happens within one frame of the request.
-  if (fb->frames_drawn > 0) {
-    std::uint64_t elapsed = fb->driver->now_ns() - fb->panned_ns;
-    std::uint64_t period = vsync_period_ns() ? vsync_period_ns() : kFlipNs;
-    if (elapsed < period && (!vsync_period_ns() || vsync_wait() != VsyncKind::works)) {
-      elapsed = fb->driver->now_ns() - fb->panned_ns;
-      if (elapsed < kFlipNs) fb->driver->sleep_ns(kFlipNs - elapsed);
-    }
-  }
+  if (!fb->flips || fb->scale > 1) return {fb->memory, fb->memory_line_bytes, fb->frames_drawn > 0 ? 1 : 0};
+  if (fb->frames_drawn > 0) wait_for_flip(fb);
   return {page_address(fb, 1 - fb->page_shown), fb->line_bytes, fb->frames_drawn > 1 ? 2 : 0};
 }
 
@@ -184,6 +227,7 @@ void framebuffer_end_frame(Framebuffer* fb, int row_begin, int row_end) {
   PLATFORM_CHECK_GE(fb->file, 0);
   if (row_begin < 0) row_begin = 0;
   if (row_end > fb->height) row_end = fb->height;
+  if (fb->flips && fb->scale > 1) draw_hidden_page(fb, row_begin, row_end);
   ++fb->frames_drawn;
   if (!fb->flips) {
     copy_rows(fb, fb->memory, fb->memory_line_bytes, fb->first_row, row_begin, row_end);
@@ -195,11 +239,14 @@ void framebuffer_end_frame(Framebuffer* fb, int row_begin, int row_end) {
     fb->panned_ns = fb->driver->now_ns();
     return;
   }
-  // Panning has stopped working: stay on the visible page and copy this frame and all later ones to it.
-  copy_rows(fb, page_address(fb, 1 - fb->page_shown), fb->line_bytes, page_address(fb, fb->page_shown), 0, fb->height);
+  // Panning has stopped working: stay on the visible page and copy this frame and all later ones to it. The back page
+  // holds this frame only if it was enlarged from there.
+  bool kept = fb->scale > 1;
+  copy_rows(fb, kept ? fb->memory : page_address(fb, 1 - fb->page_shown), kept ? fb->memory_line_bytes : fb->line_bytes,
+            page_address(fb, fb->page_shown), 0, fb->height);
   fb->first_row = page_address(fb, fb->page_shown);
   fb->flips = false;
-  fb->frames_drawn = 0;
+  if (!kept) fb->frames_drawn = 0;
 }
 
 void framebuffer_close(Framebuffer* fb) {

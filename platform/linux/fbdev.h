@@ -18,17 +18,20 @@ struct Framebuffer {
   unsigned char* first_row = nullptr;  // of page 0, left edge of the picture
   int line_bytes = 0, page_lines = 0;
   int width = 0, height = 0, pixel_bytes = 0;  // of the picture
+  int scale = 1;                               // screen pixels per pixel of the picture, each way
   bool flips = false;                          // two pages, exchanged by panning; otherwise the back page is copied
+  int stale_begin = 0, stale_end = 0;          // rows that the hidden page lacks, if enlarged from the back page
   int page_shown = 0;
   int frames_drawn = 0;  // since the method of showing was chosen
   std::uint64_t panned_ns = 0;
   VsyncKind vsync = VsyncKind::absent;
-  unsigned char* memory = nullptr;  // the back page, if copying
+  unsigned char* memory = nullptr;  // the back page, if copying or enlarging
   int memory_line_bytes = 0;
 };
 
-// Opens the device (null: /dev/fb0), maps it and clears the picture's pages. On failure returns false, `error` says
-// why, and nothing stays open.
+// Opens the device (null: /dev/fb0), maps it and clears the picture's pages. On a larger screen each pixel becomes
+// `options.scale` × as many, or the most that fit: less if it says more than these, 1 if it says so. On failure returns
+// false, `error` says why, and nothing stays open.
 bool framebuffer_open(const Driver& driver, const ScreenOptions& options, Framebuffer* framebuffer,
                       ScreenFormat* format, Error* error);
 Page framebuffer_begin_frame(Framebuffer* framebuffer);

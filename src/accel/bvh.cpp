@@ -5,6 +5,7 @@
 #include "accel/accel_list.h"
 #include "accel/bvh_kernels.h"
 #include "base/isa.h"
+#include "base/soft_float.h"
 
 namespace pocketray {
 namespace {
@@ -16,7 +17,7 @@ constexpr const AccelTraversal* kCompactKernels[kIsaCount] = {&kBaselineCompactK
 #elif defined(POCKETRAY_HAVE_NEON32)
 constexpr const AccelTraversal* kBlockKernels[kIsaCount] = {&kBaselineKernels, &kNeonKernels};
 constexpr const AccelTraversal* kCompactKernels[kIsaCount] = {&kBaselineCompactKernels, &kNeonCompactKernels};
-#elif defined(__SOFTFP__)
+#elif defined(POCKETRAY_HAS_NO_FPU)
 constexpr const AccelTraversal* kBlockKernels[kIsaCount] = {&kFixedKernels};
 constexpr const AccelTraversal* kCompactKernels[kIsaCount] = {&kFixedCompactKernels};
 #else

@@ -247,7 +247,7 @@ void add_view_command(Command program, const OptionalParts& parts, int* exit_sta
   command.add_option("--framebuffer", o->view.device, "the framebuffer's device file, if not the default");
   command.add_option("--rotate", o->view.rotation, "rotate the picture clockwise: 0, 90, 180 or 270")
       .default_str("0, or the device's");
-  command.add_option("--scale", o->view.scale, "window pixels per picture pixel; 0: the most that fit")
+  command.add_option("--scale", o->view.scale, "screen pixels per picture pixel, each way; 0: the most that fit")
       .range(0, 64)
       .capture_default_str();
   command.add_flag("--no-hud", o->no_hud, "start without the overlay");

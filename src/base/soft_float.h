@@ -5,6 +5,11 @@
 #pragma once
 #include <cstdint>
 
+// Defined where floats are software, whatever the architecture.
+#if defined(__SOFTFP__) || defined(__mips_soft_float)
+#define POCKETRAY_HAS_NO_FPU
+#endif
+
 namespace pocketray {
 
 inline std::uint32_t high_product(std::uint32_t a, std::uint32_t b) {

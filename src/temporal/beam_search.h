@@ -3,6 +3,7 @@
 #pragma once
 #include "accel/bvh.h"
 #include "base/check.h"
+#include "base/soft_float.h"
 #include "temporal/moving_geometry.h"
 #include "temporal/triangle_beam.h"
 
@@ -24,7 +25,7 @@ inline unsigned changed_lanes(const MovingGeometry& m, const TriangleBlock& leaf
 }
 
 // Without an FPU, rays against triangles in integers cost less than planes between them.
-#if defined(__SOFTFP__)
+#if defined(POCKETRAY_HAS_NO_FPU)
 constexpr bool kTestsTriangles = false;
 #else
 constexpr bool kTestsTriangles = true;

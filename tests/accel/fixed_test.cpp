@@ -6,13 +6,14 @@
 #include "accel/accel_world.h"
 #include "accel/fixed_bundle.h"
 #include "base/rng.h"
+#include "base/soft_float.h"
 
 using namespace pocketray;
 
 namespace {
 
 // Cases of a test; software floats take their time.
-#if defined(__SOFTFP__)
+#if defined(POCKETRAY_HAS_NO_FPU)
 constexpr int kCases = 200000;
 #else
 constexpr int kCases = 1000000;

@@ -21,7 +21,9 @@ missing=
 for tool in zip unzip mksquashfs unsquashfs python3; do command -v $tool >/dev/null || missing+=" $tool"; done
 [ -z "$missing" ] || { echo "skipped: this system has no$missing"; exit 77; }
 
-package() { check "package_$1" bash "$root/toolchains/package.sh" "$1" "$program" "$program" "$work/packages"; }
+package() {  # DEVICE [SDL2-PROGRAM]
+  check "package_$1" bash "$root/toolchains/package.sh" "$1" "$program" "$program" "$work/packages" ${2:+"$2"}
+}
 
 # The program, runnable, and scenes with thumbnails that the viewer takes.
 has_program() {  # FOLDER NAME
@@ -41,6 +43,24 @@ starts() {  # LOG SCRIPT [VARIABLE=VALUE...]
   check the_console_stays_empty test ! -s "$work/said"
   check the_log_is_there test -f "$log"
 }
+# A launch script names the device whose keys are those that the launcher's system sends, from up to select.
+has_keys() {  # SCRIPT DEVICE CODES
+  check "$2_is_named_by_$(basename "$1")" grep -qE " view .*--device $2( |$)" "$1"
+  check "$2_keys" python3 - "$root/platform/devices" "$2" "$3" <<'P'
+import re, sys
+folder, device, codes = sys.argv[1:]
+def read(name):
+    return open(f"{folder}/{name}.h").read()
+value = dict(re.findall(r"\b(k[A-Z]\w*) = (\d+)", read("device")))
+file = device.replace("-", "_")
+table = re.search(r"\b(k\w+Keys),", read(file))[1]
+for name in [file] + re.findall(r'"platform/devices/(\w+)\.h"', read(file)):
+    keys = re.search(table + r"\[\] = {(.*?)}", read(name), re.S)
+    if keys:
+        found = [value[key] for key in re.findall(r"key::(k\w+)", keys[1])]
+assert found == codes.split(), f"{found}, not {codes}"
+P
+}
 is_png() { [ "$(head -c 8 "$1" | od -An -tx1 | tr -d ' \n')" = 89504e470d0a1a0a ]; }
 
 package miyoo-mini
@@ -56,11 +76,14 @@ P
 check onion_icon is_png "$app/icon.png"
 has_program "$app" pocketray
 starts "$app/pocketray.log" "$app/launch.sh"
+mini_keys="103 108 105 106 57 29 42 56 18 20 28 97"  # Onion's src/common/system/keymap_hw.h
+has_keys "$app/launch.sh" miyoo-mini "$mini_keys"
 check minui_unpacks unzip -q "$work/packages/pocketray-miyoo-mini-minui.zip" -d "$work/sd"
 pak=$work/sd/Tools/miyoomini/Pocketray.pak
 has_program "$pak" pocketray
 mkdir -p "$work/logs"
 starts "$work/logs/pocketray.txt" "$pak/launch.sh" LOGS_PATH="$work/logs"
+has_keys "$pak/launch.sh" miyoo-mini "$mini_keys"
 
 package rg350
 check opk_is_squashfs unsquashfs -q -n -d "$work/opk" "$work/packages/pocketray.opk"
@@ -79,8 +102,16 @@ mkdir -p "$work/home"
 chmod -R a-w "$work/opk"
 starts "$work/home/.pocketray/pocketray.log" "$work/opk/launch.sh" HOME="$work/home"
 chmod -R u+w "$work/opk"
+# Its kernel's arch/mips/boot/dts/ingenic/bits/gcw0-base.dtsi: Ctrl, Alt, Space, Shift, Tab, Backspace, Enter, Esc.
+has_keys "$work/opk/launch.sh" rg350 "103 108 105 106 29 56 57 42 15 14 28 1"
 
-package portmaster
+# In place of the program for SDL2, one that says it ran.
+cat >"$work/sdl2" <<'C'
+#!/bin/sh
+echo "$1" >>sdl2-ran
+[ ! -e broken ] && exec ./pocketray.aarch64 "$@"
+C
+package portmaster "$work/sdl2"
 mkdir -p "$work/roms/ports"
 check port_unpacks unzip -q "$work/packages/pocketray.zip" -d "$work/roms/ports"
 ports=$work/roms/ports
@@ -108,6 +139,14 @@ P
 check port_screenshot is_png "$ports/screenshot.png"
 has_program "$ports/pocketray" pocketray.aarch64
 check port_keys bash -c '! grep -vE "^(up|down|left|right|a|b|x|y|l1|r1|start|back) = [a-z]+$" "$1"' - "$ports/pocketray/pocketray.gptk"
+# gptokeyb presses the keys that the viewer takes without a device's file: those of evdev.cpp's keyboard.
+check port_keys_are_the_keyboards python3 - "$root/platform/linux/evdev.cpp" "$ports/pocketray/pocketray.gptk" <<'P'
+import re, sys
+keyboard = re.findall(r"KEY_(\w+)", re.search(r"kKeyboard\[.*?\] = {(.*?)}", open(sys.argv[1]).read(), re.S)[1])
+pressed = dict(line.split(" = ") for line in open(sys.argv[2]).read().upper().splitlines())
+buttons = "UP DOWN LEFT RIGHT A B X Y L1 R1 START BACK".split()
+assert [pressed[button] for button in buttons] == keyboard, (pressed, keyboard)
+P
 # PortMaster's own part of the script, recorded: it sets `directory` and GPTOKEYB.
 mkdir -p "$work/data/PortMaster"
 cat >"$work/data/PortMaster/control.txt" <<C
@@ -116,6 +155,13 @@ GPTOKEYB=true
 get_controls() { :; }
 pm_finish() { :; }
 C
+starts "$ports/pocketray/log.txt" "$ports/Pocketray.sh" XDG_DATA_HOME="$work/data"
+check port_uses_sdl2 test "$(tr '\n' ' ' <"$ports/pocketray/sdl2-ran")" = "--version view "
+touch "$ports/pocketray/broken"
+rm "$ports/pocketray/log.txt" "$ports/pocketray/sdl2-ran"
+starts "$ports/pocketray/log.txt" "$ports/Pocketray.sh" XDG_DATA_HOME="$work/data"
+check port_falls_back_to_the_framebuffer test "$(cat "$ports/pocketray/sdl2-ran")" = "--version"
+rm "$ports/pocketray/pocketray-sdl2.aarch64"
 starts "$ports/pocketray/log.txt" "$ports/Pocketray.sh" XDG_DATA_HOME="$work/data"
 
 check unknown_launchers_are_refused bash -c '! bash "$1/toolchains/package.sh" gp2x "$2" "$2" "$3" 2>&1 | grep -v "choose from"' - \

@@ -17,7 +17,7 @@ TEST_CASE("device_list_has_plausible_and_distinct_entries") {
     CHECK(find_device(device.name) == &device);
     CHECK(std::strlen(device.description) > 10);
     bool class_known = false;
-    for (const char* cpu_class : {"armv4t", "armel", "armv6", "armhf", "aarch64", "x86-64"})
+    for (const char* cpu_class : {"armv4t", "armel", "armv6", "armv7", "armhf", "aarch64", "mips32", "x86-64"})
       class_known |= !std::strcmp(device.cpu_class, cpu_class);
     CHECK(class_known);
     CHECK(device.screen_width >= 320);

@@ -1,6 +1,7 @@
 #if defined(__linux__)
 #include "platform/linux/evdev.h"
 #include "platform/button_name.h"
+#include "platform/devices/device_list.h"
 
 #include <doctest/doctest.h>
 #include <linux/input.h>
@@ -70,16 +71,19 @@ TEST_CASE("evdev_keys_and_pad_buttons_are_the_handhelds") {
   CHECK(pad.taken() == "-a +hud");
 }
 
-// Goal: a device's own key table takes precedence. Method: a table in which Esc is select and Ctrl is A.
+// Goal: a device's own key table takes precedence. Method: the RG350's, in which Esc is select and Ctrl is A.
 TEST_CASE("evdev_key_table_of_a_device_comes_first") {
-  const std::uint16_t keys[kPadButtonCount] = {KEY_UP,       KEY_DOWN,      KEY_LEFT,  KEY_RIGHT,
-                                               KEY_LEFTCTRL, KEY_LEFTALT,   KEY_SPACE, KEY_LEFTSHIFT,
-                                               KEY_TAB,      KEY_BACKSPACE, KEY_ENTER, KEY_ESC};
-  Pad pad(1, keys);
+  Pad pad(1, find_device("rg350")->keys);
   pad.send(EV_KEY, KEY_LEFTCTRL, 1);
   pad.send(EV_KEY, KEY_ESC, 1);
   pad.send(EV_KEY, KEY_Z, 1);
   CHECK(pad.taken() == "+a +select");
+  pad.send(EV_KEY, KEY_LEFTALT, 1);
+  pad.send(EV_KEY, KEY_SPACE, 1);
+  pad.send(EV_KEY, KEY_LEFTSHIFT, 1);
+  pad.send(EV_KEY, KEY_TAB, 1);
+  pad.send(EV_KEY, KEY_BACKSPACE, 1);
+  CHECK(pad.taken() == "+b +x +y +l +r");
   pad.send(EV_KEY, KEY_ENTER, 1);
   CHECK(pad.taken() == "+start quit");  // start and select together
 }
@@ -138,6 +142,45 @@ TEST_CASE("evdev_releases_buttons_when_events_are_lost_or_a_device_goes") {
   pad.send(EV_KEY, KEY_Z, 0, 1);
   pad.send(EV_KEY, KEY_Z, 1, 1);
   CHECK(pad.taken() == "+b");
+}
+
+// Goal: a pad or keyboard that comes after the start works within a second, and again after being unplugged; one that
+// fails but stays does not release the others' buttons every second. Method: devices that come, fail, go and come back.
+TEST_CASE("evdev_finds_devices_that_come_later") {
+  Pad pad(1);
+  auto wait = [&](std::uint64_t duration) { pad.machine.clock_ns += duration; };
+  pad.machine.inputs.resize(2);
+  pad.machine.inputs[1].hat = true;
+  pad.send(EV_KEY, BTN_A, 1, 1);
+  pad.send(EV_ABS, ABS_HAT0X, 1, 1);
+  wait(999'000'000);
+  CHECK(pad.taken() == "");
+  CHECK(pad.machine.files_open == 1);
+  wait(1'000'000);
+  CHECK(pad.taken() == "+a +right");
+  CHECK(pad.machine.files_open == 2);
+  pad.send(EV_KEY, KEY_Z, 1);
+  CHECK(pad.taken() == "+b");
+  pad.machine.inputs[1].gone = true;
+  CHECK(pad.taken() == "-right -a -b");
+  pad.send(EV_KEY, KEY_Z, 1);
+  CHECK(pad.taken() == "+b");
+  for (int second = 0; second < 3; ++second) {
+    wait(1'000'000'000);
+    CHECK(pad.taken() == "");
+    CHECK(pad.machine.files_open == 1);
+  }
+  pad.machine.inputs[1].absent = true;
+  wait(1'000'000'000);
+  CHECK(pad.taken() == "");
+  pad.machine.inputs[1] = recorded::InputDevice();
+  pad.send(EV_KEY, BTN_A, 1, 1);
+  wait(1'000'000'000);
+  CHECK(pad.taken() == "+a");
+  CHECK(pad.machine.files_open == 2);
+  wait(1'000'000'000);
+  CHECK(pad.taken() == "");
+  CHECK(pad.machine.files_open == 2);
 }
 
 // Goal: a device that floods us with irrelevant events does not block poll(). Method: 10,000 movements, then a key.

@@ -27,7 +27,8 @@ int do_open(const char* path, int) {
   if (std::strcmp(path, "/dev/tty0") == 0 && machine->has_console) file = kTerminal;
   if (std::strncmp(path, "/dev/input/event", 16) == 0) {
     int index = std::atoi(path + 16);
-    if (index < static_cast<int>(machine->inputs.size())) file = kFirstInput + index;
+    if (index < static_cast<int>(machine->inputs.size()) && !machine->inputs[static_cast<std::size_t>(index)].absent)
+      file = kFirstInput + index;
   }
   if (file < 0) return refuse(ENOENT);
   ++machine->files_open;

@@ -27,7 +27,7 @@ struct Geometry {
 };
 
 struct InputDevice {
-  bool stick = false, hat = false, gone = false;
+  bool stick = false, hat = false, gone = false, absent = false;  // gone: fails; absent: has no file
   std::deque<input_event> events;
 };
 

@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
-"""Counts the instructions that a device spends per pixel, in all, by part of the program and by effect.
+"""Counts the instructions that a device spends per pixel, in all, by part of the program and by effect. With --classes
+alone, prints the CPU classes that can be counted.
 
 Runs the device's program under QEMU's user mode, which repeats exactly, at two picture sizes; the difference leaves
-start-up out, which is counted on its own. Cycles are estimated from weights by class of instruction: no caches, no dual issue, not calibrated on
-hardware. `make bench-device DEVICE=armhf` calls it.
+start-up out, which is counted on its own. Cycles are estimated from weights by class of instruction: no caches, no dual
+issue, not calibrated on hardware. `make bench-device DEVICE=armhf` calls it.
 """
 import argparse
 import bisect
@@ -26,8 +27,11 @@ TOLERANCE = 1.02
 CLASSES = ("integer", "branch", "load", "store", "multiply", "divide", "float", "float divide", "vector")
 MACHINES = {  # QEMU, CPU, tools, and cycles by class; loads and stores take their registers moved in addition
     "armel": ("qemu-arm", "arm926", "arm-linux-gnueabi-", (1, 3, 1, 0, 3, 30, 1, 1, 1)),
+    "armv6": ("qemu-arm", "arm1176", "arm-linux-gnueabi-", (1, 2, 1, 0, 2, 30, 3, 15, 3)),
+    "armv7": ("qemu-arm", "cortex-a9", "arm-linux-gnueabihf-", (1, 2, 1, 0, 2, 30, 2, 15, 2)),
     "armhf": ("qemu-arm", "cortex-a7", "arm-linux-gnueabihf-", (1, 2, 1, 0, 2, 8, 2, 18, 2)),
     "aarch64": ("qemu-aarch64", "cortex-a53", "aarch64-linux-gnu-", (1, 2, 1, 0, 3, 8, 2, 14, 2)),
+    "mips32": ("qemu-mipsel", "24Kf", "mipsel-linux-gnu-", (1, 2, 1, 0, 3, 30, 3, 15, 3)),
 }
 PARTS = (  # the first that matches a symbol
     ("soft float", r"^(__aeabi_[fdlui]|__(add|sub|mul|div|cmp|eq|ne|ge|gt|le|lt|unord|float|fix|extend|trunc|udiv|sqrt)|"
@@ -209,7 +213,7 @@ def check(results, path):
                   f"{result['compiler']}", file=sys.stderr)
             continue
         for what, key in (("a pixel", "instructions_per_pixel"), ("to start", "start_instructions")):
-            ratio = result[key] / was[key]
+            ratio = result[key] / was[key] if key in was else 1
             if ratio > TOLERANCE:
                 worse += 1
                 print(f"{result['scene']} on {result['class']}: {ratio:.3f} times the instructions {what} in {path}; make it "
@@ -218,8 +222,11 @@ def check(results, path):
 
 
 def main():
+    if sys.argv[1:] == ["--classes"]:
+        print(*sorted(MACHINES))
+        return
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("cpu_class", choices=sorted(MACHINES))
+    parser.add_argument("cpu_class", choices=sorted(MACHINES), metavar="CLASS", help=" ".join(sorted(MACHINES)))
     parser.add_argument("program", help="pocketray for the device, statically linked, its symbols in PROGRAM.debug")
     parser.add_argument("baker", help="pocketray for this machine")
     parser.add_argument("--scenes", nargs="+", default=SCENES, help="built-in scenes, files, or buddha")

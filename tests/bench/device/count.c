@@ -1,5 +1,5 @@
-/* A plugin for QEMU's user mode: counts the instructions of each block of an ARM program by class. bench_device.py adds
- * them up by symbol.
+/* A plugin for QEMU's user mode: counts the instructions of each block of an ARM or MIPS program by class.
+ * bench_device.py adds them up by symbol.
  *
  *   qemu-arm -plugin ./libcount.so,out=FILE PROGRAM ARGUMENTS…
  *
@@ -42,7 +42,7 @@ struct block {
 };
 static struct block* blocks;
 static FILE* out;
-static int is_64_bit;
+static enum { ARM, ARM_64, MIPS } cpu;
 
 static unsigned registers_in(uint32_t list) { return (unsigned)__builtin_popcount(list); }
 
@@ -157,6 +157,40 @@ static int class_of_a64(uint32_t w, unsigned* n) {
   return INTEGER;
 }
 
+/* MIPS32 release 2 (MD00086, A.2), without MIPS16 and microMIPS. */
+static int class_of_mips(uint32_t w, unsigned* n) {
+  uint32_t opcode = w >> 26, format = w >> 21 & 31, function = w & 63;
+  *n = 1;
+  switch (opcode) {
+    case 0x00:
+      if (function == 0x08 || function == 0x09) return BRANCH;
+      if (function == 0x18 || function == 0x19) return MULTIPLY;
+      return function == 0x1a || function == 0x1b ? DIVIDE : INTEGER;
+    case 0x01: /* traps are between branches */
+      return (w >> 16 & 0x0f) < 8 ? BRANCH : INTEGER;
+    case 0x11:
+      if (format == 8) return BRANCH;
+      return format >= 16 && (function == 0x03 || function == 0x04 || function == 0x15 || function == 0x16)
+                 ? FLOAT_DIVIDE
+                 : FLOAT;
+    case 0x13:
+      if (function == 0x0f) return INTEGER; /* prefetch */
+      if (function < 0x08) *n = function == 0x01 ? 2 : 1;
+      return function < 0x08 ? LOAD : function < 0x10 ? STORE : FLOAT;
+    case 0x1c:
+      return function < 0x06 ? MULTIPLY : INTEGER;
+    case 0x35:
+    case 0x3d:
+      *n = 2;
+      break;
+    default:
+      break;
+  }
+  if (opcode < 0x08 || (opcode >= 0x14 && opcode < 0x18)) return BRANCH;
+  if (opcode < 0x20 || opcode == 0x2f || opcode == 0x33) return INTEGER; /* cache and prefetch */
+  return opcode & 0x08 ? STORE : LOAD;
+}
+
 /* Thumb code is recognised by an instruction of two bytes or at an odd half word; a block of four-byte instructions by
  * their first halves. */
 static int is_thumb(const struct qemu_plugin_tb* tb) {
@@ -174,7 +208,7 @@ static int is_thumb(const struct qemu_plugin_tb* tb) {
 
 static void add_block(qemu_plugin_id_t id, struct qemu_plugin_tb* tb) {
   struct block* block = calloc(1, sizeof *block);
-  int thumb = !is_64_bit && is_thumb(tb);
+  int thumb = cpu == ARM && is_thumb(tb);
   (void)id;
   if (!block) abort();
   block->address = qemu_plugin_tb_vaddr(tb);
@@ -186,7 +220,9 @@ static void add_block(qemu_plugin_id_t id, struct qemu_plugin_tb* tb) {
     int class;
     memcpy(half, qemu_plugin_insn_data(x), qemu_plugin_insn_size(x));
     memcpy(&word, half, 4);
-    if (is_64_bit)
+    if (cpu == MIPS)
+      class = class_of_mips(word, &n);
+    else if (cpu == ARM_64)
       class = class_of_a64(word, &n);
     else if (!thumb)
       class = class_of_arm(word, &n);
@@ -217,7 +253,7 @@ __attribute__((visibility("default"))) int qemu_plugin_install(qemu_plugin_id_t 
     fprintf(stderr, "count: out=FILE is missing or cannot be written\n");
     return -1;
   }
-  is_64_bit = !strcmp(info->target_name, "aarch64");
+  cpu = !strcmp(info->target_name, "aarch64") ? ARM_64 : !strncmp(info->target_name, "mips", 4) ? MIPS : ARM;
   qemu_plugin_register_vcpu_tb_trans_cb(id, add_block);
   qemu_plugin_register_atexit_cb(id, write_counts, NULL);
   return 0;
