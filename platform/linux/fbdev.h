@@ -29,9 +29,9 @@ struct Framebuffer {
   int memory_line_bytes = 0;
 };
 
-// Opens the device (null: /dev/fb0), maps it and clears the picture's pages. On a larger screen each pixel becomes
-// `options.scale` × as many, or the most that fit: less if it says more than these, 1 if it says so. On failure returns
-// false, `error` says why, and nothing stays open.
+// Opens the device (null: /dev/fb0), maps it and clears the picture's pages. On a larger screen the picture is enlarged
+// by options.scale, or by the largest whole factor that fits if that is 0 or larger. On failure returns false, `error`
+// says why, and nothing stays open.
 bool framebuffer_open(const Driver& driver, const ScreenOptions& options, Framebuffer* framebuffer,
                       ScreenFormat* format, Error* error);
 Page framebuffer_begin_frame(Framebuffer* framebuffer);

@@ -12,6 +12,7 @@
 #include "plan/plan_lights.h"
 #include "plan/radiance_bounds.h"
 #include "shade/ambient_gloss.h"
+#include "shade/branches.h"
 #include "shade/camera.h"
 #include "shade/filters.h"
 #include "shade/footprint.h"
@@ -29,11 +30,9 @@
 namespace pocketray {
 namespace {
 
-bool rests(const Renderer& renderer) { return !renderer.pose.positions.count && !renderer.pose.lights.count; }
-
 // Whether the lights of the last frame are still valid: nothing moves, and nothing that they depend on has changed.
 bool is_lit(const Renderer& renderer) {
-  return renderer.lit_mask == renderer.effects.mask && rests(renderer) &&
+  return renderer.lit_mask == renderer.effects.mask && !renderer.pose.positions.count && !renderer.pose.lights.count &&
          same_lights(renderer.lit_settings, renderer.settings);
 }
 
@@ -106,11 +105,6 @@ void light_scene(Renderer* renderer) {
     bool spawns = has(renderer->effects.mask, Effect::mirror) || has(renderer->effects.mask, Effect::refraction) ||
                   has(renderer->effects.mask, Effect::alpha_blend);
     renderer->frame.radiance_bounds = spawns ? radiance_bounds(renderer->frame) : RadianceBounds{};
-    renderer->frame.radiance_regions = nullptr;
-    if (renderer->radiance_regions && has(renderer->effects.mask, Effect::refraction) && rests(*renderer)) {
-      place_radiance_regions(renderer->frame, &renderer->frame.radiance_bounds, renderer->radiance_regions);
-      renderer->frame.radiance_regions = renderer->radiance_regions;
-    }
     renderer->lit_settings = renderer->settings;
     renderer->lit_mask = renderer->effects.mask;
   }

@@ -189,8 +189,6 @@ Status build_renderer_unexposed(Renderer* renderer) {
     renderer->point_order = arena_array<std::uint8_t>(&renderer->persistent_arena, points);
     renderer->point_place = arena_array<std::uint8_t>(&renderer->persistent_arena, points);
   }
-  if (has_radiance_regions(renderer->scene))
-    renderer->radiance_regions = arena_array<RadianceRegions>(&renderer->persistent_arena, 1).data;
   if (const std::uint32_t polygons = light_polygon_count(renderer->scene, renderer->effects.mask))
     renderer->light_polygons = arena_array<LightPolygon>(&renderer->persistent_arena, polygons);
   if (const std::uint32_t lights = renderer->selected_light_max) {

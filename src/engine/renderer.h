@@ -88,8 +88,7 @@ struct Renderer {
   Array<PointGroup> point_groups;           // of area lights
   Array<std::uint8_t> point_order, point_place;
   Array<LightPolygon> light_polygons;
-  RadianceRegions* radiance_regions = nullptr;  // if planned
-  Array<LightNode> light_nodes;                 // of source selection
+  Array<LightNode> light_nodes;  // of source selection
   Array<std::uint32_t> light_order;
   Array<LightEntry> light_entries;                  // search_entry_count() of them per thread
   std::uint32_t light_count_max = 0;                // lights that may be set later; their points are planned for

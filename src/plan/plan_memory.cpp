@@ -7,7 +7,6 @@
 #include "base/check.h"
 #include "base/span.h"
 #include "plan/place_light_polygons.h"
-#include "plan/radiance_bounds.h"
 #include "scene/animate.h"
 #include "shade/carried.h"
 #include "shade/interleaved.h"
@@ -89,10 +88,8 @@ Status plan_memory_with(const Scene& scene, const Settings& settings, const Effe
   add_part(plan, "materials", ArenaKind::persistent,
            storage.recolorable ? arena_need<Material>(storage.recolorable) : 0);
   const bool has_groups = has_point_groups(settings, effects.mask);
-  const std::size_t regions = has_radiance_regions(scene) ? arena_need<RadianceRegions>(1) : 0;
   const std::size_t groups = has_groups && lights.points ? point_groups_need(lights.points) : 0;
-  add_part(plan, "lights", ArenaKind::persistent,
-           (lights.points ? arena_need<LightPoint>(lights.points) : 0) + groups + regions);
+  add_part(plan, "lights", ArenaKind::persistent, (lights.points ? arena_need<LightPoint>(lights.points) : 0) + groups);
   const std::uint32_t polygons = light_polygon_count(scene, effects.mask);
   add_part(plan, "flat lamps", ArenaKind::persistent, polygons ? arena_need<LightPolygon>(polygons) : 0);
   add_part(plan, "source selection", ArenaKind::persistent, selection_need(settings, lights.selected));

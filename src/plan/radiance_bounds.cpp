@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "base/check.h"
-#include "base/float_bits.h"
 #include "base/fmath.h"
 #include "base/limits.h"
 #include "brdf/clear_coat.h"
@@ -67,9 +66,6 @@ float box_distance_square(const Box& a, const Box& b) {
   return dot(d, d);
 }
 
-// The surfaces that a bound is for.
-enum class Receivers { end_paths, pass_light_on };
-
 bool passes_light_on(const FrameData& frame, std::uint32_t material) {
   const Scene& scene = *frame.scene;
   const Material& m = scene.materials[material];
@@ -83,7 +79,6 @@ struct LightReach {
   const FrameData* frame;
   const LightPoint* light;
   bool is_area;
-  Receivers receivers;
   Box positions;  // of all that it is
 };
 
@@ -105,7 +100,6 @@ float triangle_irradiance(const void* context, std::uint32_t triangle) {
   const LightReach& reach = *static_cast<const LightReach*>(context);
   const Triangle& t = reach.frame->scene->triangles[triangle];
   if (t.material() == reach.light->material) return 0;
-  if (passes_light_on(*reach.frame, t.material()) != (reach.receivers == Receivers::pass_light_on)) return 0;
   Box box = empty_box();
   float height = 0;
   for (std::uint32_t v : t.vertices()) {
@@ -133,34 +127,30 @@ float box_irradiance(const void* context, const Box& box) {
   return irradiance_within(reach, box, height);
 }
 
-// Upper bound of a light's irradiance on any such triangle but its own, or, with `box`, on those within; `positions`
-// holds all that it is.
-float irradiance_bound(const FrameData& frame, const LightPoint& light, Effect kind, const Box& positions,
-                       Receivers receivers, const Box* box) {
+// Upper bound of a light's irradiance on any triangle but its own; `positions` holds all that it is.
+float irradiance_bound(const FrameData& frame, const LightPoint& light, Effect kind, const Box& positions) {
   const float intensity = max_component(light.intensity);
   if (!(intensity > 0)) return 0;
   if (kind == Effect::directional_light) return intensity;
-  const LightReach reach = {&frame, &light, kind == Effect::area_light, receivers, positions};
-  const float most = box ? box_irradiance(&reach, *box)
-                         : frame.accel_info->largest(frame.accel, {&reach, box_irradiance, triangle_irradiance});
+  const LightReach reach = {&frame, &light, kind == Effect::area_light, positions};
+  const float most = frame.accel_info->largest(frame.accel, {&reach, box_irradiance, triangle_irradiance});
   return most < kRadianceMax ? most : kRadianceMax;
 }
 
 // The same for a lamp in closed form, as if one of its points had all its light.
-float lamp_bound(const FrameData& frame, const LightPolygon& polygon, LightPoint point, Receivers receivers,
-                 const Box* box) {
+float lamp_bound(const FrameData& frame, const LightPolygon& polygon, LightPoint point) {
   if (!polygon.corner_count) return 0;
-  Box corners = empty_box();
-  for (std::uint32_t i = 0; i < polygon.corner_count; ++i) corners = merge(corners, polygon.corners[i]);
+  Box box = empty_box();
+  for (std::uint32_t i = 0; i < polygon.corner_count; ++i) box = merge(box, polygon.corners[i]);
   point.position = polygon.corners[0], point.direction = polygon.normal;
   constexpr float most = std::numeric_limits<float>::max();
   point.intensity = min(point.intensity * static_cast<float>(frame.settings.points_per_area_light), {most, most, most});
   const float surrounded = kPiF * max_component(polygon.radiance);
-  return std::min(surrounded, irradiance_bound(frame, point, Effect::area_light, corners, receivers, box));
+  return std::min(surrounded, irradiance_bound(frame, point, Effect::area_light, box));
 }
 
-// Upper bound of the irradiance by all lights, on such triangles or, with `box`, within.
-float irradiance_bound(const FrameData& frame, Receivers receivers, const Box* box) {
+// Upper bound of the irradiance by all lights.
+float irradiance_bound(const FrameData& frame) {
   float irradiance = 0;
   for (int r = 0; r < frame.light_run_count; ++r) {
     const LightRun& run = frame.light_runs[r];
@@ -170,11 +160,10 @@ float irradiance_bound(const FrameData& frame, Receivers receivers, const Box* b
       Effect kind = light.material != kNone                                       ? Effect::area_light
                     : run.sample == find_light_sampler(Effect::directional_light) ? Effect::directional_light
                                                                                   : Effect::point_light;
-      lamp += irradiance_bound(frame, light, kind, {light.position, light.position}, receivers, box);
+      lamp += irradiance_bound(frame, light, kind, {light.position, light.position});
       const std::uint32_t points = run.polygons ? frame.settings.points_per_area_light : 1, next = i + 1 - run.begin;
       if (next % points) continue;
-      if (run.polygons)
-        lamp = std::max(lamp, lamp_bound(frame, run.polygons[next / points - 1], light, receivers, box));
+      if (run.polygons) lamp = std::max(lamp, lamp_bound(frame, run.polygons[next / points - 1], light));
       irradiance += std::exchange(lamp, 0.0f);
     }
   }
@@ -205,15 +194,13 @@ RadianceBounds radiance_bounds(const FrameData& frame) {
   const float background = surroundings_bound(frame, shows_environment);
   // Of surfaces that end paths, of those that pass on less than comes, and of others.
   MaterialBound end = {0, 0, 0}, weaken = {0, 0, 0}, keep = {0, 0, 0};
-  float irradiance[2] = {-1, -1};
+  float irradiance = -1;
   float fixed = 0;  // the most that surfaces which weaken light can have if none is brighter: own / (1 − passed)
   for (std::uint32_t i = 0; i < scene.materials.count; ++i) {
     const MaterialBound m = material_bound(frame, i);
     const bool passes_on = passes_light_on(frame, i);
-    float& arriving = irradiance[passes_on];
-    if (m.scattered > 0 && arriving < 0)
-      arriving = irradiance_bound(frame, passes_on ? Receivers::pass_light_on : Receivers::end_paths, nullptr);
-    const float own = m.own + lit(m.scattered, arriving);
+    if (m.scattered > 0 && irradiance < 0) irradiance = irradiance_bound(frame);
+    const float own = m.own + lit(m.scattered, irradiance);
     MaterialBound& kind = !passes_on ? end : m.passed < 1 ? weaken : keep;
     kind.own = std::max(kind.own, own), kind.passed = std::max(kind.passed, m.passed);
     if (passes_on && m.passed < 1) fixed = std::max(fixed, own / (1 - m.passed));
@@ -223,130 +210,18 @@ RadianceBounds radiance_bounds(const FrameData& frame) {
   for (std::uint32_t i = 0; i <= kRayDepthMax; ++i) {
     auto passed_on = [&](const MaterialBound& kind) { return kind.own + (kind.passed > 0 ? kind.passed * bound : 0); };
     const float passed = std::max(passed_on(keep), std::min(passed_on(weaken), std::max(fixed, bound)));
-    bounds.passed_on[i] = round_up(passed * 1.0001f);  // covers rounding of the sums
     bound = std::max(std::max(end.own, passed), background);
-    CHECK_GE(bound, background);  // fails for NaN, too
-    bounds.after[i] = round_up(bound * 1.0001f);
+    CHECK_GE(bound, background);                  // fails for NaN, too
+    bounds.after[i] = round_up(bound * 1.0001f);  // covers rounding of the sums
   }
   return bounds;
 }
 
-namespace {
-
-// Of surfaces within a box.
-struct RegionQuery {
-  const FrameData* frame;
-  Box box;
-  float irradiance;
-  // Of the material of the last triangle: neighbours often share one.
-  mutable std::uint32_t material = kNone;
-  mutable float value = 0;
-};
-
-bool overlap(const Box& a, const Box& b) {
-  for (int axis = 0; axis < 3; ++axis)
-    if (!(a.low[axis] <= b.high[axis] && b.low[axis] <= a.high[axis])) return false;
-  return true;
-}
-Box triangle_box(const FrameData& frame, const Triangle& t) {
-  Box box = empty_box();
-  for (std::uint32_t v : t.vertices()) box = merge(box, frame.positions[v]);
-  return box;
-}
-float most_in_box(const void* context, const Box& box) {
-  return overlap(static_cast<const RegionQuery*>(context)->box, box) ? kRadianceMax : 0;
-}
-// Light that leaves a surface that ends paths.
-float end_radiance(const void* context, std::uint32_t triangle) {
-  const RegionQuery& query = *static_cast<const RegionQuery*>(context);
-  const Triangle& t = query.frame->scene->triangles[triangle];
-  if (!overlap(query.box, triangle_box(*query.frame, t))) return 0;
-  if (t.material() != query.material) {
-    const MaterialBound m = material_bound(*query.frame, t.material());
-    query.material = t.material();
-    query.value = passes_light_on(*query.frame, t.material()) ? 0 : m.own + lit(m.scattered, query.irradiance);
-  }
-  return query.value;
-}
-// 1 of a surface that passes light on.
-float is_passing(const void* context, std::uint32_t triangle) {
-  const RegionQuery& query = *static_cast<const RegionQuery*>(context);
-  const Triangle& t = query.frame->scene->triangles[triangle];
-  return passes_light_on(*query.frame, t.material()) && overlap(query.box, triangle_box(*query.frame, t)) ? 1 : 0;
-}
-float one_in_box(const void* context, const Box& box) { return most_in_box(context, box) > 0 ? 1 : 0; }
-
-// The cell and a sixteenth of it around: more than hits and rays' origins are off by rounding.
-Box box_of_cell(const Box& bounds, int region) {
-  CHECK(region >= 0 && region < kRegionCount);
-  Box cell;
-  for (int axis = 0; axis < 3; ++axis, region /= kRegionSide) {
-    const float size = (bounds.high[axis] - bounds.low[axis]) / kRegionSide;
-    const float begin = bounds.low[axis] + size * static_cast<float>(region % kRegionSide);
-    cell.low[axis] = begin - size / 16, cell.high[axis] = begin + size + size / 16;
-  }
-  return cell;
-}
-
-// Each cell's most becomes that of all cells from there on towards the octant.
-void reach_across(RadianceRegions* regions, int octant, int axis) {
-  const int stride = axis == 0 ? 1 : axis == 1 ? kRegionSide : kRegionSide * kRegionSide;
-  CHECK(octant >= 0 && octant < 8 && axis >= 0 && axis < 3);
-  const int bit = 1 << octant, step = octant >> axis & 1 ? -stride : stride;
-  for (int i = 0; i < kRegionCount; ++i) {
-    const int region = step > 0 ? kRegionCount - 1 - i : i, place = region / stride % kRegionSide;
-    if (place == (step > 0 ? kRegionSide - 1 : 0)) continue;
-    regions->ends[region][octant] = std::max(regions->ends[region][octant], regions->ends[region + step][octant]);
-    regions->passes[region] |= static_cast<std::uint8_t>(regions->passes[region + step] & bit);
-  }
-}
-
-std::uint32_t hash_of(const RadianceRegions& regions) {
-  std::uint32_t hash = 2166136261u;  // FNV-1
-  auto add = [&](std::uint32_t bits) { hash = hash * 16777619u ^ bits; };
-  for (int region = 0; region < kRegionCount; ++region) {
-    for (float most : regions.ends[region]) add(float_bits(most));
-    add(regions.passes[region]);
-  }
-  return hash;
-}
-
-}  // namespace
-
-void place_radiance_regions(const FrameData& frame, RadianceBounds* bounds, RadianceRegions* regions) {
-  CHECK(bounds != nullptr && regions != nullptr);
-  CHECK(frame.scene != nullptr && frame.accel_info != nullptr);
-  Box box = empty_box();
-  for (const Vec3& p : frame.positions) box = merge(box, p);
-  regions->low = box.low;
-  for (int axis = 0; axis < 3; ++axis) {
-    const float size = box.high[axis] - box.low[axis];
-    regions->cells_per_unit[axis] = size > 0 && size < kRadianceMax ? kRegionSide / size : 0;
-  }
-  const bool shows_environment = has(frame.mask, Effect::environment) && environment_of(*frame.scene);
-  const float background = surroundings_bound(frame, shows_environment);
-  const float anywhere = irradiance_bound(frame, Receivers::end_paths, nullptr);
-  for (int region = 0; region < kRegionCount; ++region) {
-    RegionQuery query = {&frame, box_of_cell(box, region), anywhere};
-    const float here = irradiance_bound(frame, Receivers::end_paths, &query.box);
-    if (here < anywhere) query.irradiance = here;
-    const float most = frame.accel_info->largest(frame.accel, {&query, most_in_box, end_radiance});
-    const float end = round_up(std::max(most, background) * 1.0001f);
-    const bool passes = frame.accel_info->largest(frame.accel, {&query, one_in_box, is_passing}) > 0;
-    for (float& at : regions->ends[region]) at = std::min(end, bounds->after[0]);
-    regions->passes[region] = passes ? 0xff : 0;
-  }
-  for (int octant = 0; octant < 8; ++octant)
-    for (int axis = 0; axis < 3; ++axis) reach_across(regions, octant, axis);
-  bounds->regions_hash = hash_of(*regions);
-}
-
-bool has_radiance_regions(const Scene& scene) {
+bool has_branches(const Scene& scene) {
+  if (scene.clear_coats.count > 0) return true;
   for (const Material& m : scene.materials)
     if (!is_zero(m.transmission)) return true;
   return false;
 }
-
-bool has_branches(const Scene& scene) { return scene.clear_coats.count > 0 || has_radiance_regions(scene); }
 
 }  // namespace pocketray

@@ -1,22 +1,16 @@
 // Upper bounds of the radiance along rays, for the cut-off: emission, direct light at the smallest distance of every
 // light from the geometry, and the most that interreflections at mirrors and glass can add.
 #pragma once
-#include "shade/branches.h"
 #include "shade/frame_data.h"
 
 namespace pocketray {
 
 // Of any ray: the brightest of what surfaces send out that end a path, of the surroundings, and of what surfaces pass
 // on that mirror or transmit, each with its own share; rounded up by at most an eighth. Infinite if unbounded. After
-// settings.ray_depth, FrameData::beyond_depth or the environment is seen. regions_hash is 0.
+// settings.ray_depth, FrameData::beyond_depth or the environment is seen.
 RadianceBounds radiance_bounds(const FrameData& frame);
 
 // Whether paths branch: something transmits, or has a coat.
 bool has_branches(const Scene& scene);
-// Whether memory for regions is planned: something transmits.
-bool has_radiance_regions(const Scene& scene);
-
-// Bounds for each region of a scene at rest, whose bounds of any ray are `bounds`; sets their regions_hash.
-void place_radiance_regions(const FrameData& frame, RadianceBounds* bounds, RadianceRegions* regions);
 
 }  // namespace pocketray

@@ -10,39 +10,6 @@
 
 namespace pocketray {
 
-constexpr int kRegionSide = 4;  // cells along each side of the scene's bounds
-constexpr int kRegionCount = kRegionSide * kRegionSide * kRegionSide;
-
-// Upper bounds by the cell in which a ray begins and the octant of its direction, whose signs are its bits: the cells
-// there hold all that the ray can meet.
-struct RadianceRegions {
-  Vec3 low, cells_per_unit;
-  float ends[kRegionCount][8];        // by surfaces that end paths, or by the surroundings
-  std::uint8_t passes[kRegionCount];  // by octants, whether there are surfaces that pass light on
-};
-
-// Never falls as the coordinate rises.
-inline int region_along(float coordinate, float low, float cells_per_unit) {
-  const float cell = (coordinate - low) * cells_per_unit;
-  return !(cell >= 1) ? 0 : cell >= kRegionSide - 1 ? kRegionSide - 1 : static_cast<int>(cell);
-}
-inline int region_of(const RadianceRegions& regions, const Vec3& p) {
-  int region = 0;
-  for (int axis = 3; axis-- > 0;)
-    region = region * kRegionSide + region_along(p[axis], regions.low[axis], regions.cells_per_unit[axis]);
-  return region;
-}
-
-// Of a ray that may still meet `further` reflections and refractions.
-inline float radiance_bound(const FrameData& frame, std::uint32_t further, const Vec3& origin, const Vec3& direction) {
-  if (!frame.radiance_regions) return frame.radiance_bounds.after[further];
-  const RadianceRegions& regions = *frame.radiance_regions;
-  const int region = region_of(regions, origin);
-  const int octant = (direction.x < 0 ? 1 : 0) | (direction.y < 0 ? 2 : 0) | (direction.z < 0 ? 4 : 0);
-  const float ends = regions.ends[region][octant];
-  return regions.passes[region] >> octant & 1 ? std::max(ends, frame.radiance_bounds.passed_on[further]) : ends;
-}
-
 // Linear radiance of exposed white 1 above which display levels widen, and how fast: with w(L) the width of the level
 // at L relative to that at 0, w(L) ≥ 1 + kLevelSlope · (L − kDarkLevels) up to 1. Derived: beyond its linear part,
 // sRGB's width 2.4 / 1.055 · L^(1.4 / 2.4) is concave, hence above its chord from there to w(1) = 29.39.

@@ -157,17 +157,10 @@ using StripFunction = void (*)(Tracer* tracer, const TileStrip& strip, const Pix
 // Upper bounds of the radiance along a ray, by the number of reflections and refractions that it may still meet.
 struct RadianceBounds {
   float after[kRayDepthMax + 1] = {};
-  float passed_on[kRayDepthMax + 1] = {};  // by surfaces that mirror or transmit
-  std::uint32_t regions_hash = 0;
 
-  bool operator==(const RadianceBounds& other) const {
-    return std::equal(after, std::end(after), other.after) &&
-           std::equal(passed_on, std::end(passed_on), other.passed_on) && regions_hash == other.regions_hash;
-  }
+  bool operator==(const RadianceBounds& other) const { return std::equal(after, std::end(after), other.after); }
   bool operator!=(const RadianceBounds& other) const { return !(*this == other); }
 };
-
-struct RadianceRegions;
 
 // What selective rendering interpolates; selective.h.
 struct Selection {
@@ -210,8 +203,7 @@ struct FrameData {
   bool filters_read_point = false;                                              // HitFilter::reads_point
   bool filter_every_shadow = false;  // false: only shadow rays to area lights need the filter
   RadianceBounds radiance_bounds;
-  const RadianceRegions* radiance_regions = nullptr;  // null: the bounds are the same everywhere
-  Vec3 beyond_depth = {0, 0, 0};                      // radiance that stands in for rays beyond Settings::ray_depth
+  Vec3 beyond_depth = {0, 0, 0};  // radiance that stands in for rays beyond Settings::ray_depth
   Selection selection;
   float left_out_max = 0;    // radiance that may be skipped of a dark sample
   float left_out_slope = 0;  // the same grows by this times the radiance of the darkest channel that exceeds

@@ -52,13 +52,10 @@ constexpr bool kBranches = has(mask, Effect::refraction) || has(mask, Effect::cl
 
 // Counts a ray that ends by the maximum depth, for which radiance `seen` stands in. What it would see is bounded for
 // kRayDepthMax further reflections and refractions.
-template <bool branches>
-void end_ray(Tracer* tracer, float weight, const Vec3& seen, const Vec3& origin, const Vec3& direction) {
-  const FrameData& frame = *tracer->frame;
+inline void end_ray(Tracer* tracer, float weight, const Vec3& seen) {
   ++tracer->rays_ended;
   tracer->ended_weight_max = std::max(tracer->ended_weight_max, weight);
-  float bound = frame.radiance_bounds.after[kRayDepthMax];
-  if constexpr (branches) bound = radiance_bound(frame, kRayDepthMax, origin, direction);
+  const float bound = tracer->frame->radiance_bounds.after[kRayDepthMax];
   const float least = std::min(seen.x, std::min(seen.y, seen.z));
   if (weight > 0) tracer->branching.ended += weight * std::max(max_component(seen), bound - least);
 }
@@ -85,7 +82,7 @@ Vec3 spawn(Tracer* tracer, RayKind kind, const Surface& s, const Vec3& direction
   const FrameData& frame = *tracer->frame;
   if (path.depth >= frame.settings.ray_depth) {
     const Vec3 seen = has_environment<mask>(frame) ? radiance_behind<mask>(frame, direction) : frame.beyond_depth;
-    end_ray<kBranches<mask>>(tracer, max_component(path.weight * weight), seen, safe_origin(s, side), direction);
+    end_ray(tracer, max_component(path.weight * weight), seen);
     return weight * seen;
   }
   Path<mask> next = path;
@@ -94,11 +91,8 @@ Vec3 spawn(Tracer* tracer, RayKind kind, const Surface& s, const Vec3& direction
   float most = max_component(next.weight);
   const std::uint32_t further = frame.settings.ray_depth - next.depth;
   if (!(most > 0) || leave_out(tracer, most * frame.radiance_bounds.after[further])) return {0, 0, 0};
-  const Ray ray = {safe_origin(s, side), direction, __builtin_inff()};
-  if constexpr (kBranches<mask>)
-    if (leave_out(tracer, most * radiance_bound(frame, further, ray.origin, direction))) return {0, 0, 0};
   ++tracer->rays[static_cast<int>(kind)];
-  return weight * radiance<mask>(tracer, ray, next);
+  return weight * radiance<mask>(tracer, {safe_origin(s, side), direction, __builtin_inff()}, next);
 }
 
 // The perfect mirror. If the normal would reflect the ray below the surface, the geometric normal is used.

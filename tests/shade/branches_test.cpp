@@ -68,42 +68,21 @@ const Nest kNests[] = {{1, 1.5f, {1, 1, 1}, false},
 
 }  // namespace
 
-// Goal: no ray of nested glass exceeds the bound of the region where it begins and the octant of its direction. Method:
-// sampling, from everywhere to everywhere, at several depths.
-TEST_CASE("radiance_regions_bound_every_ray") {
-  int below = 0;
+// Goal: no ray of nested glass exceeds its bound. Method: sampling, from everywhere to everywhere, at several depths.
+TEST_CASE("radiance_bounds_hold_in_nested_glass") {
   for (const Nest& nest : kNests)
     for (std::uint32_t depth : {0u, 2u, 6u}) {
       auto s = make_nest(nest);
       auto t = make_renderer(s->scene, nest_settings(depth, 0));
-      const FrameData& frame = t->renderer.frame;
-      REQUIRE(frame.radiance_regions != nullptr);
       Rng rng = make_rng(depth + 1);
       auto between = [&](float low, float high) { return low + (high - low) * next_float(&rng); };
-      const float anywhere = frame.radiance_bounds.after[depth];
       for (int i = 0; i < effort(4000); ++i) {
         const Vec3 from = {between(-4.5f, 4.5f), between(-1.2f, 5.2f), between(-3.2f, 4.2f)};
         const Vec3 to = {between(-4, 4), between(-1, 5), between(-3, 4)};
-        const Vec3 direction = normalize(to - from);
-        const float bound = radiance_bound(frame, depth, from, direction);
-        CHECK(max_component(trace_ray(t->renderer, from, direction)) <= bound);
-        CHECK(bound <= anywhere);
-        below += bound < anywhere / 2;
+        CHECK(max_component(trace_ray(t->renderer, from, normalize(to - from))) <=
+              t->renderer.frame.radiance_bounds.after[depth]);
       }
     }
-  CHECK(below > effort(4000));  // regions tell more than the scene as a whole
-}
-
-// Goal: a ray that cannot meet the lamp is not bounded by it. Method: closed form: below a lamp of radiance 20, rays
-// downwards see the floor or what glass shows them; far from the glass, at most the floor's light.
-TEST_CASE("radiance_regions_know_where_a_lamp_is") {
-  auto s = make_nest({1, 1.5f, {1, 1, 1}, true});
-  auto t = make_renderer(s->scene, nest_settings(4, 0));
-  const FrameData& frame = t->renderer.frame;
-  REQUIRE(frame.radiance_regions != nullptr);
-  CHECK(radiance_bound(frame, 4, {0, 4, 0}, {0, 1, 0}) >= 20);
-  CHECK(radiance_bound(frame, 4, {0, 0, 0}, {0, -1, 0}) >= 20);  // by way of the glass
-  CHECK(radiance_bound(frame, 4, {3.9f, 3, 3.9f}, {1, -1, 1}) < 10);
 }
 
 // Goal: glass bounds what it passes on by what it can see, however many surfaces follow, and surfaces that end paths

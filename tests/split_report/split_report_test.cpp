@@ -101,7 +101,7 @@ TEST_CASE("split_report_prices_preparation") {
   constexpr double kPrepareNs = 60e6;
   for (const CoherenceMode mode : {CoherenceMode::off, CoherenceMode::on}) {
     Reporting r;
-    make_reporting(builtin_store(), "seesaw", "pi-zero", 1, &r);
+    make_reporting(builtin_store(), "seesaw", "miyoo", 1, &r);
     Settings settings = r.device->renderer.settings;
     settings.width = 64, settings.height = 60, settings.coherence = mode;
     r.device = make_renderer(stored_scene(builtin_store(), "seesaw").scene, settings);

@@ -21,7 +21,7 @@ SIZES = ((320, 240), (160, 120))
 PIXELS = SIZES[0][0] * SIZES[0][1] - SIZES[1][0] * SIZES[1][1]
 BUDDHA = "mesh/happy_vrip_res3.ply"
 SCENES = ("cornell", "statue", "seesaw", "buddha")
-TOLERANCE = 1.02
+TOLERANCE, START_TOLERANCE = 1.02, 1.1  # the start depends on the machine, too: its environment, its file system
 
 # As in count.c; then registers moved by loads and by stores.
 CLASSES = ("integer", "branch", "load", "store", "multiply", "divide", "float", "float divide", "vector")
@@ -212,9 +212,10 @@ def check(results, path):
             print(f"{result['scene']}: not compared, since {path} has its count with GCC {was['compiler']}, not "
                   f"{result['compiler']}", file=sys.stderr)
             continue
-        for what, key in (("a pixel", "instructions_per_pixel"), ("to start", "start_instructions")):
+        for what, key, most in (("a pixel", "instructions_per_pixel", TOLERANCE),
+                                ("to start", "start_instructions", START_TOLERANCE)):
             ratio = result[key] / was[key] if key in was else 1
-            if ratio > TOLERANCE:
+            if ratio > most:
                 worse += 1
                 print(f"{result['scene']} on {result['class']}: {ratio:.3f} times the instructions {what} in {path}; make it "
                       f"faster, or state the reason and update the file", file=sys.stderr)
@@ -235,7 +236,7 @@ def main():
     parser.add_argument("--symbols", type=int, default=0, metavar="N", help="also list the N dearest functions")
     parser.add_argument("--options", default="", metavar="TEXT", help='options of render, as in --options="--selective .25"')
     parser.add_argument("--json", metavar="FILE", help="write the results; - for standard output")
-    parser.add_argument("--check", metavar="FILE", help="fail if a scene takes 2 %% more instructions than in FILE")
+    parser.add_argument("--check", metavar="FILE", help="fail if a scene takes 2 %% more instructions than in FILE, or 10 %% more to start")
     arguments = parser.parse_args()
     if arguments.options and arguments.check:
         fail("the counts to --check with are those without --options")
