@@ -96,18 +96,20 @@ TEST_CASE("split_report_chosen_share_is_within_5_percent_of_the_best") {
 }
 
 // Goal: what it takes the device to pose a moving scene counts, and it is left out where servers had better render all.
-// Method: a device that takes long for it; its times alone and with a server, and what a sweep says of small shares.
+// Method: a slow device that takes long for it; its times alone and with a server, and what a sweep says of small
+// shares.
 TEST_CASE("split_report_prices_preparation") {
-  constexpr double kPrepareNs = 60e6;
+  constexpr double kPrepareNs = 60e6, kSlowdown = 127;
   for (const CoherenceMode mode : {CoherenceMode::off, CoherenceMode::on}) {
     Reporting r;
-    make_reporting(builtin_store(), "seesaw", "miyoo", 1, &r);
+    make_reporting(builtin_store(), "seesaw", "pi-zero", 1, &r);
     Settings settings = r.device->renderer.settings;
     settings.width = 64, settings.height = 60, settings.coherence = mode;
     r.device = make_renderer(stored_scene(builtin_store(), "seesaw").scene, settings);
     r.setup.device = &r.device->renderer;
     r.setup.orbit_degrees = 0;
     r.setup.frame_count = 16;
+    r.setup.device_ns = kSlowdown * r.setup.server_ns;
     r.setup.device_prepare_ns = kPrepareNs, r.setup.server_prepare_ns = 0.5e6;
     SplitFigures figures;
     Progress progress = start_progress("split", split_frame_count(r.setup, kSteps));
