@@ -119,7 +119,7 @@ TEST_CASE("ended_rays_err_within_their_bound") {
         CHECK((counts.branching.ended > 0) == (counts.rays_ended > 0));
         if (counts.branching.ended > 0) most = std::max(most, difference / double(counts.branching.ended));
       }
-      if (depth < 5) CHECK(most > 1e-3);
+      if (depth < 5 && kEffortDivisor == 1) CHECK(most > 1e-3);
     }
 }
 
@@ -146,11 +146,12 @@ TEST_CASE("ended_bound_is_the_largest_of_the_picture") {
 // Goal: what is left out of a tree of rays stays below what is told, and below half a display level of the pixel as it
 // is. Method: differential, with and without the cut-off.
 TEST_CASE("cut_off_is_bounded_in_nested_glass") {
+  const unsigned width = effort_side(32), height = effort_side(24);
   for (const Nest& nest : kNests)
     for (std::uint32_t depth : {3u, 7u, 9u}) {
       auto s = make_nest(nest);
-      auto with = make_renderer(s->scene, nest_settings(depth, .5f)),
-           without = make_renderer(s->scene, nest_settings(depth, 0));
+      auto with = make_renderer(s->scene, nest_settings(depth, .5f, width, height)),
+           without = make_renderer(s->scene, nest_settings(depth, 0, width, height));
       const Renderer &a = with->renderer, &b = without->renderer;
       REQUIRE(render_frame(&with->renderer, 0).ok);
       REQUIRE(render_frame(&without->renderer, 0).ok);
@@ -159,7 +160,7 @@ TEST_CASE("cut_off_is_bounded_in_nested_glass") {
       CAPTURE(depth);
       CHECK(counts.left_out_share_max <= 1.00001f);
       CHECK(total_counts(b).rays_left_out == 0);
-      if (depth > 3) CHECK(secondary_rays(counts) < secondary_rays(total_counts(b)));
+      if (depth > 3 && kEffortDivisor == 1) CHECK(secondary_rays(counts) < secondary_rays(total_counts(b)));
       for (std::uint32_t i = 0; i < a.image.count; ++i)
         for (int axis = 0; axis < 3; ++axis) {
           const double left = double(a.image[i][axis]), right = double(b.image[i][axis]);
