@@ -3,7 +3,7 @@ import gzip
 import os
 import re
 
-FOLDERS = ("bin", "dev", "etc", "lib", "lib/modules", "proc", "root", "sys", "tmp")
+FOLDERS = ("bin", "dev", "etc", "lib", "lib/modules", "proc", "root", "scenes", "sys", "tmp")
 
 
 class Archive:
