@@ -6,6 +6,7 @@
 
 #include "app/commands.h"
 #include "app/options.h"
+#include "plan/plan_scene.h"
 #include "platform/file.h"
 #include "scene/baked.h"
 #include "session/compress.h"
@@ -85,6 +86,11 @@ Status bake(const BakeOptions& o) {
   void* accel_block = build_heap_accel(*find_accel(o.accel), scene, &scene.accel);
   if (!accel_block) return failure("not enough memory to build the accelerator: bake a smaller model");
   double build_ms = static_cast<double>(clock_ns() - start) * 1e-6;
+  DefaultView default_view;
+  if (scene.cameras.empty() || !has_light(scene) || scene.info.default_lights != 0) {
+    default_view = find_default_view(scene, scene_bounds(scene));
+    scene.default_view = {&default_view, 1};
+  }
   std::size_t byte_count = 0;
   Status status = write_scene(o.output, scene, &byte_count);
   std::size_t accel_bytes = scene.accel.bytes();

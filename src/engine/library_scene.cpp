@@ -144,7 +144,8 @@ pocketray_result pocketray_use_scene_camera(pocketray_instance* instance, std::u
     return refuse(POCKETRAY_ERROR_ARGUMENT,
                   failure("there is no camera %u: the scene has %u, counted from 0", camera_index, cameras.count));
   float aspect = static_cast<float>(renderer->settings.width) / static_cast<float>(renderer->settings.height);
-  renderer->camera = cameras.empty() ? default_camera(renderer->scene, aspect) : cameras[camera_index];
+  renderer->camera =
+      cameras.empty() ? default_camera(renderer->default_view, renderer->bounds, aspect) : cameras[camera_index];
   renderer->camera_index = camera_index;
   renderer->camera_overridden = false;
   instance->refining = false;

@@ -33,20 +33,23 @@ void add_what_is_missing(Renderer* renderer) {
   float aspect = static_cast<float>(renderer->settings.width) / static_cast<float>(renderer->settings.height);
   if (renderer->look.has_background || renderer->look.environment == EnvironmentChoice::none)
     leave_out_environment(&scene);
+  renderer->bounds = scene_bounds(scene);
+  const bool has_default_lights = !has_light(scene) || scene.info.default_lights != 0;
+  if (scene.cameras.empty() || has_default_lights) renderer->default_view = find_default_view(scene, renderer->bounds);
   if (scene.cameras.empty()) {
     scene.info.default_camera = 1;
-    renderer->camera = default_camera(scene, aspect, renderer->look.vertical_fov);
+    renderer->camera = default_camera(renderer->default_view, renderer->bounds, aspect, renderer->look.vertical_fov);
   } else {
     renderer->camera = scene.cameras[renderer->camera_index < scene.cameras.count ? renderer->camera_index : 0];
     if (renderer->look.vertical_fov > 0)
       renderer->camera.vertical_fov = static_cast<float>(renderer->look.vertical_fov);
   }
-  if (!has_light(scene) || scene.info.default_lights != 0) {
+  if (has_default_lights) {
     scene.info.default_lights = 1;
     scene.info.auto_exposure = 0;
     scene.info.ambient = scene.environment_info.empty() ? default_ambient() : Vec3{0, 0, 0};
     if (is_zero(scene.info.background)) scene.info.background = default_background();
-    default_lights(scene, renderer->camera, renderer->default_lights);
+    default_lights(renderer->default_view, renderer->bounds, renderer->camera, renderer->default_lights);
     scene.lights = {renderer->default_lights, kDefaultLightCount};
     if (renderer->look.light == LightChoice::sun) renderer->default_lights[0] = default_sun(), scene.lights.count = 1;
     if (renderer->look.light == LightChoice::none) scene.lights = {};
@@ -70,7 +73,7 @@ Arena take_front(Arena* rest, const char* name, std::size_t bytes) {
 Status adopt_or_build(Renderer* renderer) {
   renderer->accel.positions = renderer->scene.positions;
   renderer->accel.triangles = renderer->scene.triangles;
-  renderer->accel.bounds = scene_bounds(renderer->scene);
+  renderer->accel.bounds = renderer->bounds;
   if (moves(*renderer) && !renderer->accel_info->refit) {
     renderer->accel_data = arena_array<std::uint8_t>(&renderer->persistent_arena,
                                                      renderer->accel_info->need(renderer->scene.triangles.count));

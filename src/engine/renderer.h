@@ -119,7 +119,9 @@ struct Renderer {
   Pace pace;                   // of an emulated device; default: none
   Workers* workers = nullptr;  // null: only the caller's thread
   Light default_lights[2];
-  Look look;  // set before plan_renderer()
+  Box bounds;                // of all triangles, at time 0
+  DefaultView default_view;  // of a scene without cameras or lights
+  Look look;                 // set before plan_renderer()
 };
 
 // First step: carves the scene arena out of the block, to load the scene into. The caller keeps ownership of the block,

@@ -56,13 +56,13 @@ Camera inside_camera(const Box& bounds, double vertical_fov) {
 
 namespace {
 
-// Moves the eye towards the middle until no wall stands between them, and by a fifth of the way away from it.
-void keep_in_room(const Scene& scene, const Box& bounds, Camera* camera) {
-  const Vec3 middle = center(bounds), way = camera->eye - middle;
+// How far the camera inside may be from the middle so that no wall stands between them, and a fifth of the way is left.
+float share_inside(const Scene& scene, const Box& bounds) {
+  const Vec3 middle = center(bounds), way = inside_camera(bounds).eye - middle;
   const float distance = length(way);
-  if (!(distance > 0)) return;
+  if (!(distance > 0)) return 1;
   const float room = 0.8f * free_distance(scene, middle, way * (1 / distance));
-  if (room < distance) camera->eye = middle + way * (room / distance);
+  return room < distance ? room / distance : 1;
 }
 
 // Whether any light is on.
@@ -70,33 +70,46 @@ bool shines(Array<const Light> lights) {
   return std::any_of(lights.begin(), lights.end(), [](const Light& light) { return !is_zero(light.intensity); });
 }
 
+constexpr Vec3 kSides[kDefaultViewSides] = {
+    {0.45f, 0.35f, 1.0f}, {1.0f, 0.35f, -0.45f}, {-0.45f, 0.35f, -1.0f}, {-1.0f, 0.35f, 0.45f}};
+
 // Of four directions around the scene, 24° to the right and 18° above, the front unless another shows much more of open
 // surfaces' fronts. Much is 0.3 of a side of the box, as in find_room().
-Vec3 side_to_look_from(const Scene& scene, const Box& bounds) {
-  const Vec3 kSides[] = {{0.45f, 0.35f, 1.0f}, {1.0f, 0.35f, -0.45f}, {-0.45f, 0.35f, -1.0f}, {-1.0f, 0.35f, 0.45f}};
-  Vec3 best = normalize(kSides[0]);
-  if (is_empty(bounds)) return best;
+std::uint32_t side_to_look_from(const Scene& scene, const Box& bounds) {
   const Vec3d area = shown_area(scene, bounds);
   const double box_side = static_cast<double>(half_area(bounds)) / 3;
-  double shown = dot(area, to_double(best)) + 0.3 * box_side;
-  for (const Vec3& side : kSides) {
-    const double here = dot(area, to_double(normalize(side)));
-    if (here > shown) shown = here, best = normalize(side);
+  double shown = dot(area, to_double(normalize(kSides[0]))) + 0.3 * box_side;
+  std::uint32_t best = 0;
+  for (std::uint32_t side = 0; side < kDefaultViewSides; ++side) {
+    const double here = dot(area, to_double(normalize(kSides[side])));
+    if (here > shown) shown = here, best = side;
   }
   return best;
 }
 
 }  // namespace
 
-Camera default_camera(const Scene& scene, float aspect, double vertical_fov) {
-  Box bounds = scene_bounds(scene);
+DefaultView find_default_view(const Scene& scene, const Box& bounds) {
+  if (scene.default_view.count) return scene.default_view[0];
+  DefaultView view;
+  if (is_empty(bounds)) return view;
   const Room room = find_room(scene, bounds);
+  view.is_room = room.is_room, view.opening = room.opening;
+  if (!room.is_room) view.side = side_to_look_from(scene, bounds);
+  if (room.has_thick_walls) view.inside_share = share_inside(scene, bounds);
+  return view;
+}
+
+Camera default_camera(const DefaultView& view, const Box& bounds, float aspect, double vertical_fov) {
+  CHECK_LT(view.side, kDefaultViewSides);
   const double framing = vertical_fov > 0 ? vertical_fov : kFramingFieldOfView;
-  if (!room.is_room) return framing_camera(bounds, aspect, side_to_look_from(scene, bounds), framing);
-  bool looks_in = !is_zero(room.opening) && std::fabs(room.opening.y) < 0.5f;  // but not through a missing roof
-  if (looks_in) return framing_camera(bounds, aspect, room.opening, framing);
+  if (is_empty(bounds) || !view.is_room) return framing_camera(bounds, aspect, normalize(kSides[view.side]), framing);
+  const Vec3& opening = view.opening;
+  bool looks_in = !is_zero(opening) && std::fabs(opening.y) < 0.5f;  // but not through a missing roof
+  if (looks_in) return framing_camera(bounds, aspect, opening, framing);
   Camera camera = inside_camera(bounds, vertical_fov > 0 ? vertical_fov : kInsideFieldOfView);
-  if (room.has_thick_walls) keep_in_room(scene, bounds, &camera);
+  const Vec3 middle = center(bounds);
+  if (view.inside_share < 1) camera.eye = middle + (camera.eye - middle) * view.inside_share;
   return camera;
 }
 
@@ -107,20 +120,18 @@ bool lights_itself(const Scene& scene) {
   return false;
 }
 
-void default_lights(const Scene& scene, const Camera& camera, Light* lights) {
+void default_lights(const DefaultView& view, const Box& bounds, const Camera& camera, Light* lights) {
   CHECK(lights != nullptr);
   // Intensities are chosen: by the key alone, white that faces it has 0.83 of display white, which leaves room for the
   // fill's 0.2. In a room they grow with its size squared, so that rooms of any size are equally bright.
   lights[0] = lights[1] = Light();
-  Box bounds = scene_bounds(scene);
-  const Room room = find_room(scene, bounds);
-  if (room.is_room) {  // the sun cannot get in
+  if (view.is_room && !is_empty(bounds)) {  // the sun cannot get in
     Vec3 half = extent(bounds) * 0.5f;
     float square = dot(half, half);
     lights[0].position = center(bounds) + Vec3{0, half.y * 0.6f, 0};
     lights[0].intensity = Vec3{0.62f, 0.6f, 0.56f} * square;
     lights[1].position = camera.eye;
-    lights[1].intensity = Vec3{0.16f, 0.18f, 0.21f} * (is_zero(room.opening) ? square : 4 * square);
+    lights[1].intensity = Vec3{0.16f, 0.18f, 0.21f} * (is_zero(view.opening) ? square : 4 * square);
     return;
   }
   Vec3 backward = normalize(camera.eye - camera.target);

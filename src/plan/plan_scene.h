@@ -15,10 +15,13 @@ Camera framing_camera(const Box& bounds, float aspect, const Vec3& backward, dou
 // A camera inside the box that looks across it.
 Camera inside_camera(const Box& bounds, double vertical_fov = kInsideFieldOfView);
 
+// The scene's, as stored, or measured by some looks at every triangle. `bounds`: scene_bounds().
+DefaultView find_default_view(const Scene& scene, const Box& bounds);
+
 // The camera of a scene without one: inside a closed room, in front of an open one, otherwise framing the scene from
 // slightly above and to the right of the front, or of another side where open surfaces show their backs to the front.
 // `vertical_fov`: 0 chooses it.
-Camera default_camera(const Scene& scene, float aspect, double vertical_fov = 0);
+Camera default_camera(const DefaultView& view, const Box& bounds, float aspect, double vertical_fov = 0);
 // Whether a model lights itself: it has a light, or a surface that emits more than display white.
 bool lights_itself(const Scene& scene);
 
@@ -26,7 +29,7 @@ bool lights_itself(const Scene& scene);
 // weaker fill from its right, both directional; in a room a point light below the ceiling and one at the camera. An
 // ambient term comes with them.
 constexpr std::uint32_t kDefaultLightCount = 2;
-void default_lights(const Scene& scene, const Camera& camera, Light* lights);
+void default_lights(const DefaultView& view, const Box& bounds, const Camera& camera, Light* lights);
 // What is left of them in a studio (import/environment.h), an environment that comes beside default lights. Chosen: a
 // white surface that faces the key is as bright as without a studio, within a tenth.
 constexpr float kStudioLightShare = 0.5f;

@@ -1,5 +1,5 @@
-// Whether a scene is seen from inside, and from which side it shows most otherwise. Each costs one look at every
-// triangle, at the start of a scene without a camera or lights.
+// Whether a scene is seen from inside, and from which side it shows most otherwise. Each costs some looks at every
+// triangle, when a scene without a camera or lights is baked, or opened without having been.
 #pragma once
 #include "scene/scene.h"
 

@@ -238,6 +238,16 @@ struct SceneInfo {
   float auto_exposure = 0;           // 1: measure exposure before the first frame
 };
 
+// From where a scene without a camera is seen, and without lights is lit (plan/plan_scene.h). Measuring it takes some
+// looks at every triangle, so `bake` stores it.
+struct DefaultView {
+  std::uint32_t is_room = 0;  // 1: seen from inside, or through the side that is open
+  std::uint32_t side = 0;     // otherwise the side of four that it is seen from
+  Vec3 opening = {0, 0, 0};   // unit vector out through a room's open side; zero if it is closed
+  float inside_share = 1;     // of the way from the middle to the camera inside: the part without walls
+};
+constexpr std::uint32_t kDefaultViewSides = 4;
+
 struct BvhNode;  // accel/bvh.h
 struct BvhLeaf;  // accel/bvh.h
 
@@ -277,8 +287,9 @@ struct Scene {
   Array<const Grain> grains;                      // one per material, or empty
   // One per vertex, or empty: the tangent of the frame of maps; none: the triangle's own, see shade/normal_map.h.
   Array<const PackedTangent> tangents;
-  Array<const Vec2> second_uvs;        // one per vertex, or empty: coordinates of the textures of that set
-  Array<const ClearCoat> clear_coats;  // one per material, or empty
+  Array<const Vec2> second_uvs;           // one per vertex, or empty: coordinates of the textures of that set
+  Array<const ClearCoat> clear_coats;     // one per material, or empty
+  Array<const DefaultView> default_view;  // one, or none: measured at the start where it is needed
 };
 
 inline bool is_animated(const Scene& scene) {

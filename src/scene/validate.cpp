@@ -160,6 +160,20 @@ Status validate_camera(const Scene& scene, std::uint32_t index) {
   return check_fields("cameras", index, fields);
 }
 
+Status validate_default_view(const Scene& scene) {
+  if (scene.default_view.empty()) return success();
+  const DefaultView& view = scene.default_view[0];
+  if (scene.default_view.count > 1)
+    return failure("%u default_views: there must be one or none", scene.default_view.count);
+  if (view.is_room > 1) return failure("default_view[0].is_room is %u: it must be 0 or 1", view.is_room);
+  if (view.side >= kDefaultViewSides)
+    return failure("default_view[0].side is %u of %u sides", view.side, kDefaultViewSides);
+  if (!is_unit(view.opening) && !is_zero(view.opening))
+    return failure("default_view[0].opening is neither of length 1 nor zero");
+  const FieldRange fields[] = {{"inside_share", view.inside_share, 0, 1}};
+  return check_fields("default_view", 0, fields);
+}
+
 }  // namespace
 
 Status check_normals(const char* array, Array<const Vec3> normals) {
@@ -212,6 +226,7 @@ Status validate_scene(const Scene& scene) {
   RETURN_IF_ERROR(validate_grains(scene));
   RETURN_IF_ERROR(validate_clear_coats(scene));
   RETURN_IF_ERROR(validate_lights_and_cameras(scene));
+  RETURN_IF_ERROR(validate_default_view(scene));
   RETURN_IF_ERROR(validate_nodes(scene));
   RETURN_IF_ERROR(validate_animations(scene));
   RETURN_IF_ERROR(validate_moving_meshes(scene));

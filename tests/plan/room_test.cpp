@@ -16,6 +16,10 @@ Room room_of(GeneratedScene* s) {
   s->bind();
   return find_room(s->scene, scene_bounds(s->scene));
 }
+Camera camera_of(const Scene& scene, float aspect) {
+  const Box bounds = scene_bounds(scene);
+  return default_camera(find_default_view(scene, bounds), bounds, aspect);
+}
 bool is_room(GeneratedScene* s) { return room_of(s).is_room; }
 
 // Two shells: walls with a front inside and one outside.
@@ -55,7 +59,7 @@ TEST_CASE("room_of_thin_or_thick_walls_is_seen_from_inside") {
     CHECK(room.is_room);
     CHECK(room.has_thick_walls == (wall > 0));
     CHECK(is_zero(room.opening));
-    const Camera camera = default_camera(s.scene, 4.0f / 3);
+    const Camera camera = camera_of(s.scene, 4.0f / 3);
     CHECK(is_within(camera.eye, {-4, 0, -3}, {4, 3, 3}));
     const Vec3 middle = center(scene_bounds(s.scene)), way = camera.eye - middle;
     CHECK(free_distance(s.scene, middle, normalize(way)) > length(way));
@@ -79,7 +83,7 @@ TEST_CASE("room_without_a_wall_is_seen_through_the_opening") {
     const Room room = room_of(&s);
     CHECK(room.is_room);
     CHECK(dot(room.opening, out) > 0.99f);
-    CHECK(dot(default_camera(s.scene, 4.0f / 3).eye, out) > 2);
+    CHECK(dot(camera_of(s.scene, 4.0f / 3).eye, out) > 2);
   }
 }
 
@@ -141,16 +145,41 @@ TEST_CASE("default_camera_looks_at_the_front_of_open_surfaces") {
     add_backdrop(&s, towards);
     add_box(&s, {-0.5f, -2, towards - 0.5f}, {0.5f, 0, towards + 0.5f}, 0);
     s.bind();
-    CHECK(default_camera(s.scene, 4.0f / 3).eye.z * towards > 1);
+    CHECK(camera_of(s.scene, 4.0f / 3).eye.z * towards > 1);
   }
   GeneratedScene solid;
   add_box(&solid, {-1, -1, -1}, {1, 1, 1}, add_material(&solid, {}));
   solid.bind();
   const Vec3 backward = normalize(Vec3{0.45f, 0.35f, 1.0f});
   const Camera expected = framing_camera(scene_bounds(solid.scene), 1.5f, backward);
-  CHECK(default_camera(solid.scene, 1.5f).eye == expected.eye);
+  CHECK(camera_of(solid.scene, 1.5f).eye == expected.eye);
   GeneratedScene floor;  // shows its front to all sides
   add_quad(&floor, {-2, 0, 2}, {2, 0, 2}, {2, 0, -2}, {-2, 0, -2}, add_material(&floor, {}));
   floor.bind();
-  CHECK(default_camera(floor.scene, 1.5f).eye == framing_camera(scene_bounds(floor.scene), 1.5f, backward).eye);
+  CHECK(camera_of(floor.scene, 1.5f).eye == framing_camera(scene_bounds(floor.scene), 1.5f, backward).eye);
+}
+
+// Goal: a scene that was baked is seen as before it was, without a look at its triangles. Method: rooms and solids; the
+// same view stored with other triangles.
+TEST_CASE("default_view_is_taken_as_stored") {
+  for (float wall : {0.0f, 0.3f}) {
+    GeneratedScene room;
+    add_thick_room(&room, wall);
+    room.bind();
+    const Box bounds = scene_bounds(room.scene);
+    DefaultView view = find_default_view(room.scene, bounds);
+    CHECK(view.is_room == 1);
+    CHECK((view.inside_share > 0 && view.inside_share <= 1));
+    GeneratedScene solid;
+    add_box(&solid, bounds.low, bounds.high, add_material(&solid, {}));
+    solid.bind();
+    CHECK(find_default_view(solid.scene, bounds).is_room == 0);
+    solid.scene.default_view = {&view, 1};
+    CHECK(camera_of(solid.scene, 1.5f).eye == camera_of(room.scene, 1.5f).eye);
+    view.inside_share = 0.5f;
+    const Vec3 middle = center(bounds);
+    CHECK(camera_of(solid.scene, 1.5f).eye == middle + (inside_camera(bounds).eye - middle) * 0.5f);
+    view.is_room = 0, view.side = 3;
+    CHECK(camera_of(solid.scene, 1.5f).eye.x < -4);
+  }
 }

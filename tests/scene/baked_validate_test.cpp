@@ -217,6 +217,18 @@ TEST_CASE("validate_scene_refuses_bad_grains") {
   accepts([](FullScene* f) { f->grains[0].direction = {0.70710678f, -0.70710678f}; });
 }
 
+TEST_CASE("validate_scene_refuses_bad_default_views") {
+  refuses("2 default_views", [](FullScene* f) { f->default_view.push_back({}); });
+  refuses("default_view[0].is_room is 2", [](FullScene* f) { f->default_view[0].is_room = 2; });
+  refuses("default_view[0].side is 4 of 4", [](FullScene* f) { f->default_view[0].side = 4; });
+  for (float bad : {kNan, kInf, -0.5f, 1.5f})
+    refuses("default_view[0].inside_share", [=](FullScene* f) { f->default_view[0].inside_share = bad; });
+  for (float bad : {kNan, kInf, 0.1f, 2.0f})
+    refuses("default_view[0].opening", [=](FullScene* f) { f->default_view[0].opening.y = bad; });
+  accepts([](FullScene* f) { f->default_view[0].opening = {0, 0, 0}; });
+  accepts([](FullScene* f) { f->default_view.clear(); });
+}
+
 // Goal: a clear coat out of range, with an invalid texture, over an unlit material or with normals of the second
 // coordinates is refused.
 TEST_CASE("validate_scene_refuses_bad_clear_coats") {

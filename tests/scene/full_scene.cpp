@@ -92,7 +92,7 @@ void FullScene::bind() {
   scene.radiosity_splits = view(radiosity_splits);
   scene.environment_info = view(environment_info), scene.environment_texels = view(environment_texels);
   scene.grains = view(grains), scene.tangents = view(tangents), scene.second_uvs = view(second_uvs);
-  scene.clear_coats = view(clear_coats);
+  scene.clear_coats = view(clear_coats), scene.default_view = view(default_view);
 }
 
 void make_full_scene(std::uint64_t seed, std::uint32_t vertex_count, std::uint32_t triangle_count, FullScene* full) {
@@ -132,6 +132,7 @@ void make_full_scene(std::uint64_t seed, std::uint32_t vertex_count, std::uint32
   ClearCoat& coat = full->clear_coats[1];
   coat.strength = 0.75f, coat.roughness = 0.5f, coat.roughness_low = 0.25f, coat.normal_scale = -2;
   coat.strength_texture.texture = coat.roughness_texture.texture = 1, coat.normal.texture = 0;
+  full->default_view = {{1, 2, {0, 0.6f, -0.8f}, 0.5f}};
   for (int i = 0; i < 37; ++i) full->accel.push_back(static_cast<std::uint8_t>(next_u32(&rng)));
   full->bind();
 }

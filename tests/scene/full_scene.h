@@ -37,6 +37,7 @@ struct FullScene {
   std::vector<std::uint32_t> environment_texels;
   std::vector<pocketray::Grain> grains;
   std::vector<pocketray::ClearCoat> clear_coats;
+  std::vector<pocketray::DefaultView> default_view;
   std::vector<pocketray::PackedTangent> tangents;
 
   FullScene() = default;
