@@ -223,7 +223,8 @@ mach-bands: setup-tests configure
 # The packages of a device's launchers: DEVICE=miyoo-mini (OnionUI, MinUI), rg350 (.opk), portmaster. This machine's program
 # bakes their scenes.
 package: all
-	@toolchains/setup.sh desktop package && $(MAKE) -s DEVICE= CROSS_PREFIX=
+	@toolchains/setup.sh desktop package && $(MAKE) -s DEVICE= CROSS_PREFIX= configure && \
+	cmake --build build -j$(JOBS) --target pocketray
 ifeq ($(DEVICE),portmaster)
 	@toolchains/sdl2.sh $(CLASS) $(BUILD)-sdl2 && cmake --build $(BUILD)-sdl2 -j$(JOBS) --target pocketray
 endif

@@ -3,20 +3,8 @@
 # that links embree_cost with it.
 set -eu
 cd "$(dirname "$0")/.."
-class=$1 folder=$(realpath -m "$2")
-case $class in
-  aarch64) arch=arm64 ;;
-  *) echo "embree.sh: Debian has no Embree for $class: try DEVICE=aarch64" >&2; exit 1 ;;
-esac
-if [ ! -d "$folder/packages/usr/include/embree3" ]; then
-  rm -rf "$folder/packages"
-  mkdir -p "$folder/packages"
-  toolchains/unpack_packages.sh $arch "$folder/packages" libembree-dev libembree3-3 libtbb12 libtbbmalloc2
-fi
-generator=() launcher=()
-! command -v ninja >/dev/null || [ -f "$folder/CMakeCache.txt" ] || generator=(-G Ninja)
-! command -v ccache >/dev/null || launcher=(-DCMAKE_C_COMPILER_LAUNCHER=ccache -DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
-sysroot=$(toolchains/sysroot.sh "$class")
-cmake -S . -B "$folder" ${generator[@]+"${generator[@]}"} ${launcher[@]+"${launcher[@]}"} \
-  -DCMAKE_TOOLCHAIN_FILE="$PWD/toolchains/$class.cmake" -DPOCKETRAY_SYSROOT="$sysroot" -DPOCKETRAY_STATIC=OFF \
-  -DPOCKETRAY_EMBREE="$folder/packages" >/dev/null
+. toolchains/with_packages.sh
+folder=$(realpath -m "$2")
+[ "$1" = aarch64 ] || { echo "embree.sh: Debian has no Embree for $1: try DEVICE=aarch64" >&2; exit 1; }
+unpack_once "$folder/packages" usr/include/embree3 libembree-dev libembree3-3 libtbb12 libtbbmalloc2
+configure_dynamic "$1" "$folder" -DPOCKETRAY_EMBREE="$folder/packages"

@@ -37,6 +37,10 @@ echo v4T >"$work/sysroot/libc.a"
 mkdir "$work/empty"
 compiler() { bash "$root/toolchains/compiler.sh" "$@"; }
 
+for script in "$root"/toolchains/*.sh; do
+  [ -x "$script" ] || { echo "FAILED: make cannot run $script, which is not executable"; failures=$((failures + 1)); }
+done
+
 expect none_for_armv4t 1 'CROSS_PREFIX=arm-920t' compiler armv4t
 expect no_such_prefix 1 'no arm-none-such-g\+\+ in PATH' compiler armhf arm-none-such-
 expect another_class 0 '' compiler armhf arm-vendor-
