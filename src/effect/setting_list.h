@@ -16,6 +16,7 @@ inline constexpr const char* kAreaIrradianceNames[] = {"points", "analytic"};
 inline constexpr const char* kNormalNames[] = {"scene", "flat"};
 inline constexpr const char* kResolutionNames[] = {"full", "checkerboard", "half", "interleaved", "two-thirds"};
 inline constexpr const char* kMovingContrastNames[] = {"as-resting", "as-seen"};
+inline constexpr const char* kCompensationNames[] = {"none", "rays"};
 inline constexpr const char* kReconstructionNames[] = {"constant", "bilinear", "bicubic", "quadratic", "cubic"};
 
 // "auto", "none", then the effects that are methods of indirect light.
@@ -187,6 +188,19 @@ inline constexpr SettingRow kSettingList[] = {
      kAsAsked,
      {16, 32, 64, 128, 256, 512},
      virtual_lights_price,
+     ""},
+    {"compensation",
+     "light from nearby that instant radiosity lacks, since its virtual lights are bounded there",
+     "rays: found by a short ray through each pixel's surroundings",
+     nullptr,
+     choice_field<&Quality::compensation>(kCompensationNames),
+     1,
+     bit(Effect::instant_radiosity),
+     bit(Effect::instant_radiosity),
+     true,
+     double(Compensation::rays),
+     {double(Compensation::none), double(Compensation::rays)},
+     nullptr,
      ""},
     {"selective",
      "contrast of neighbouring pixels up to which those between are interpolated",
