@@ -13,6 +13,7 @@ struct VirtualSource {
   static constexpr float kFaint = 0.5f;
   const VirtualLights& lights;
   std::uint32_t count;
+  float tolerance;
 
   bool arrives(std::uint32_t index, const Surface& s, const Vec3& origin, Vec3* light, Ray* ray) const {
     return pocketray::arrives(lights.light[index], lights.first_geometry_max, s, origin, light, ray);
@@ -21,7 +22,7 @@ struct VirtualSource {
 
 VirtualSource source_of(const FrameData& frame) {
   const VirtualLights& lights = *virtual_lights_of(frame.indirect);
-  return {lights, lights.count};
+  return {lights, lights.count, frame.settings.light_tolerance};
 }
 
 std::uint32_t count(const FrameData& frame) { return virtual_lights_of(frame.indirect)->count; }

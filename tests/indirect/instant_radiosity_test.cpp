@@ -367,3 +367,36 @@ TEST_CASE("instant_radiosity_of_an_empty_room_needs_no_shadows") {
     different += !same_pixel(a->renderer.image[i], b->renderer.image[i]);
   CHECK(different == 0);
 }
+
+// Goal: with many lights, some of them share a ray, and with few, none do. Method: a room with things in it; the rays
+// of 512 lights, and the mean difference; the same bits with 64.
+TEST_CASE("instant_radiosity_of_many_lights_shares_rays") {
+  Room room(true);
+  auto rays_of = [](const TestRenderer& t) {
+    std::uint64_t sum = 0;
+    for (const Tracer& tracer : t.renderer.tracers) sum += tracer.rays[static_cast<int>(RayKind::shadow)];
+    return static_cast<double>(sum);
+  };
+  for (std::uint32_t count : {64u, 512u}) {
+    Settings settings = instant(count);
+    std::unique_ptr<TestRenderer> shared = rendered(room.scene, settings);
+    settings.light_tolerance = 0;
+    std::unique_ptr<TestRenderer> every = rendered(room.scene, settings);
+    std::size_t different = 0;
+    double apart = 0, light = 0;
+    for (std::size_t i = 0; i < every->renderer.image.count; ++i) {
+      const Vec3 &a = shared->renderer.image[i], &b = every->renderer.image[i];
+      different += !same_pixel(a, b);
+      apart += static_cast<double>(max_component(abs(a - b))), light += static_cast<double>(max_component(b));
+    }
+    CAPTURE(apart / light);
+    if (count == 64) {
+      CHECK(different == 0);
+      CHECK(rays_of(*shared) == rays_of(*every));
+    } else {
+      CHECK(different > 0);
+      CHECK(apart < 0.02 * light);
+      CHECK(rays_of(*shared) < 0.7 * rays_of(*every));
+    }
+  }
+}
