@@ -288,6 +288,7 @@ void place_virtual_lights(FrameData* frame) {
   const bool is_compensated = frame->settings.compensation == Compensation::rays;
   lights->geometry_max = static_cast<float>(kBound * patch);
   lights->first_geometry_max = static_cast<float>((is_compensated ? kCompensatedBound : kBound) * patch);
+  CHECK_LE(lights->first_geometry_max, lights->geometry_max);
   float sum = 0;
   for (std::uint32_t i = 0; i < lights->count; ++i) {
     VirtualLight& light = lights->light[i];
