@@ -16,6 +16,7 @@ inline constexpr const char* kAreaIrradianceNames[] = {"points", "analytic"};
 inline constexpr const char* kNormalNames[] = {"scene", "flat"};
 inline constexpr const char* kResolutionNames[] = {"full", "checkerboard", "half", "interleaved", "two-thirds"};
 inline constexpr const char* kMovingContrastNames[] = {"as-resting", "as-seen"};
+inline constexpr const char* kCompensationNames[] = {"none", "rays"};
 inline constexpr const char* kReconstructionNames[] = {"constant", "bilinear", "bicubic", "quadratic", "cubic"};
 
 // "auto", "none", then the effects that are methods of indirect light.
@@ -188,6 +189,19 @@ inline constexpr SettingRow kSettingList[] = {
      {16, 32, 64, 128, 256, 512},
      virtual_lights_price,
      ""},
+    {"compensation",
+     "light from nearby that instant radiosity lacks, since its virtual lights are bounded there",
+     "rays: found by a short ray through each pixel's surroundings",
+     nullptr,
+     choice_field<&Quality::compensation>(kCompensationNames),
+     1,
+     bit(Effect::instant_radiosity),
+     bit(Effect::instant_radiosity),
+     true,
+     double(Compensation::rays),
+     {double(Compensation::none), double(Compensation::rays)},
+     nullptr,
+     ""},
     {"selective",
      "contrast of neighbouring pixels up to which those between are interpolated",
      "0: trace every pixel; 0.2: hardly visible",
@@ -230,12 +244,12 @@ inline constexpr SettingRow kSettingList[] = {
      ""},
     {"light-tolerance",
      "of many lights, share of a surface's light that needs no shadow rays",
-     "the strongest lights are tested; 0: all",
+     "the strongest lights are tested, and a ray to one of some virtual lights stands for them; 0: all",
      "light tolerance",
      real_field<&Quality::light_tolerance>(Quantity::light_tolerance),
      4,
-     bit(Effect::source_selection),
-     bit(Effect::source_selection),
+     bit(Effect::source_selection) | bit(Effect::instant_radiosity),
+     bit(Effect::source_selection) | bit(Effect::instant_radiosity),
      false,
      0,
      {0.5, 0.25, 0.125, 0.0625, 0.03125, 0.015625, 0},

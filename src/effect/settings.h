@@ -22,6 +22,9 @@ enum class IndirectChoice : std::uint8_t { automatic, none, first };
 // again, and the two elements.
 enum class Reconstruction : std::uint8_t { constant, bilinear, bicubic, quadratic, cubic };
 
+// Light that virtual lights lack by the bound of their geometry term: none of it, or as rays find it.
+enum class Compensation : std::uint8_t { none, rays };
+
 // Shadow rays to an area light: to some of its points first, and to the others where these differ, or to every point.
 enum class AreaShadows : std::uint8_t { adaptive, every };
 // Light from flat lamps: the sum over their points, or in closed form.
@@ -46,7 +49,8 @@ struct Quality {
   IndirectChoice indirect = IndirectChoice::automatic;
   Reconstruction reconstruction = Reconstruction::bicubic;
   std::uint32_t virtual_lights = 64;  // of instant radiosity; a pixel traces a shadow ray to a sixteenth of them
-  float selective_contrast = 0;       // up to which pixels are interpolated, as displayed; 0: all are traced
+  Compensation compensation = Compensation::none;
+  float selective_contrast = 0;  // up to which pixels are interpolated, as displayed; 0: all are traced
   MovingContrast moving_contrast = MovingContrast::as_resting;
   Resolution resolution = Resolution::full;
   float light_tolerance = 0.0625f;  // of many lights, the share that may go untested for shadows; 0: all are tested

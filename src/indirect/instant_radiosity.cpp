@@ -5,11 +5,11 @@
 
 namespace pocketray {
 
-Vec3 virtual_irradiance(const VirtualLights& lights, const Vec3& point, const Vec3& normal) {
+Vec3 virtual_irradiance(const VirtualLights& lights, float geometry_max, const Vec3& point, const Vec3& normal) {
   CHECK_LE(lights.count, kVirtualLightRoom);
   Vec3 sum = {0, 0, 0}, to_light;
   for (std::uint32_t i = 0; i < lights.count; ++i)
-    sum += virtual_irradiance(lights, lights.light[i], point, normal, &to_light);
+    sum += virtual_irradiance(lights.light[i], geometry_max, point, normal, &to_light);
   return sum;
 }
 
@@ -32,8 +32,8 @@ Vec3 InstantRadiosity::radiance(const IndirectPoint& at) {
   effect_entered<Effect::instant_radiosity>();
   CHECK(at.prepared != nullptr);
   if (is_zero(at.diffuse)) return {0, 0, 0};
-  return at.diffuse *
-         (virtual_irradiance(*static_cast<const VirtualLights*>(at.prepared), at.point, at.normal) * (1 / kPiF));
+  const VirtualLights& lights = *static_cast<const VirtualLights*>(at.prepared);
+  return at.diffuse * (virtual_irradiance(lights, lights.geometry_max, at.point, at.normal) * (1 / kPiF));
 }
 
 }  // namespace pocketray

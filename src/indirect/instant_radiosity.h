@@ -19,21 +19,23 @@ struct VirtualLights {
   // Bound of the geometry term, cos cos / distance²: without it, a light would be infinitely bright where it lies
   // [Keller97, sec. 4]. It takes away light near edges, less the more lights there are: HARDCASES row 41.
   float geometry_max = 0;
-  float irradiance_max = 0;  // of all lights together
+  float first_geometry_max = 0;  // the same at first hits: lower if compensation makes up for it
+  float irradiance_max = 0;      // of all lights together
 };
 
-// Irradiance of a light on a surface, without shadow; *to_light is set unless it is zero.
-inline Vec3 virtual_irradiance(const VirtualLights& lights, const VirtualLight& light, const Vec3& point,
-                               const Vec3& normal, Vec3* to_light) {
+// Irradiance of a light on a surface, without shadow, with the geometry term bounded; *to_light is set unless it is
+// zero.
+inline Vec3 virtual_irradiance(const VirtualLight& light, float geometry_max, const Vec3& point, const Vec3& normal,
+                               Vec3* to_light) {
   Vec3 way = light.position - point;
   float square = dot(way, way), cos_surface = dot(normal, way), cos_light = -dot(light.normal, way);
   if (!(square > 0) || !(cos_surface > 0) || !(cos_light > 0)) return {0, 0, 0};
   float geometry = (cos_surface / square) * (cos_light / square);
   *to_light = way;
-  return light.intensity * (geometry < lights.geometry_max ? geometry : lights.geometry_max);
+  return light.intensity * (geometry < geometry_max ? geometry : geometry_max);
 }
 // The sum over all lights.
-Vec3 virtual_irradiance(const VirtualLights& lights, const Vec3& point, const Vec3& normal);
+Vec3 virtual_irradiance(const VirtualLights& lights, float geometry_max, const Vec3& point, const Vec3& normal);
 
 struct InstantRadiosity {
   static constexpr const char* kName = "instant-radiosity";

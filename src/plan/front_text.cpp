@@ -16,9 +16,11 @@ constexpr char kFirstWord[] = "pocketray-front";
 // Settings come first, in the order of their list.
 enum Key : int { flip = kSettingCount, ns, kKeyCount };
 static_assert(kKeyCount <= 32, "one bit per key");
-// What only whole frames have is left out at its default, so that fronts from before it are read, and read by programs
-// from before it.
-bool may_be_absent(const SettingRow& row) { return row.wire_bytes == 0; }
+// What only whole frames have, and what came last, is left out at its default, so that fronts from before it are read,
+// and read by programs from before it.
+bool may_be_absent(const SettingRow& row) {
+  return row.wire_bytes == 0 || row.field.get == get_member<&Quality::compensation>;
+}
 const char* key_name(int key) { return key == flip ? "flip" : key == ns ? "ns" : kSettingList[key].name; }
 
 struct Text {

@@ -141,6 +141,7 @@ Status plan_memory(const Scene& scene, const Settings& settings, const EffectPla
   bool wanted = settings.coherence == CoherenceMode::on || (settings.coherence == CoherenceMode::automatic && changes);
   const char* mixes = is_interleaved(effects.mask) && settings.coherence_by_tables
                           ? "the tables do not know which pixels mix their light"
+                      : is_compensated(settings, effects.mask)   ? "rays of compensation are not known"
                       : has(effects.mask, Effect::selective)     ? "selective rendering interpolates pixels"
                       : has(effects.mask, Effect::undersampling) ? "undersampling reconstructs pixels"
                                                                  : nullptr;

@@ -10,6 +10,7 @@ namespace {
 
 struct DistantSource {
   static constexpr float kFaint = 0;  // behind a body overhead, light along the ground is not faint
+  static constexpr float tolerance = 0;
   const EnvironmentLights& lights;
   std::uint32_t count;
 

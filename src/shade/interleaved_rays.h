@@ -18,6 +18,7 @@ struct InterleavedRay {
 struct InterleavedRays {
   std::uint32_t count = 0;
   float least = 0;        // fainter ones are not traced
+  float enough = 0;       // of the light of a group
   Vec3 open = {0, 0, 0};  // the sum of their light
   InterleavedRay sent[kSourcesOfPixelMax];
   InterleavedRays() {}  // leaves them as they are
@@ -27,11 +28,12 @@ struct InterleavedRays {
 //   count
 //   kFaint: of a pixel's sources, those that give less than this share of their mean get no ray, and as much of their
 //       light arrives as of the others'
+//   tolerance: of the rest, neighbours form groups, see each_group()
 //   arrives(index, surface, origin, &light, &ray): false if the surface is turned away from it
 template <class Source>
 void find_sources(const Source& source, const Surface& surface, std::uint32_t place, InterleavedRays* rays) {
   CHECK_LE(source.count, kInterleavedSourceMax);
-  rays->count = 0, rays->least = 0, rays->open = {0, 0, 0};
+  rays->count = 0, rays->least = rays->enough = 0, rays->open = {0, 0, 0};
   if (is_zero(surface.diffuse)) return;
   const Vec3 origin = safe_origin(surface, 1);
   float all = 0;
@@ -43,6 +45,51 @@ void find_sources(const Source& source, const Surface& surface, std::uint32_t pl
     ++rays->count;
   }
   if (rays->count > 0) rays->least = Source::kFaint * all / static_cast<float>(rays->count);
+  rays->enough = source.tolerance * all;
+}
+
+// Sources that share a ray: the brightest one's.
+struct RayGroup {
+  const InterleavedRay* ray;
+  Vec3 light;  // of all of them
+  float most;
+};
+
+// Sources that follow each other lie close together. Calls visit(group) for groups of them that have the tolerance's
+// share of the pixel's light. All light of a group is taken to arrive if its ray does: it is known, and the error is
+// less than the tolerance, as a cluster's of Lightcuts [Walter05, sec. 3], since the others have less. A pixel traces
+// no more than one ray and the inverse of the tolerance, however many sources there are. Returns the light of the
+// fainter ones.
+template <class Visit>
+Vec3 each_group(const InterleavedRays& rays, Visit visit) {
+  Vec3 faint = {0, 0, 0};
+  const InterleavedRay *r = rays.sent, *end = r + rays.count;
+  if (!(rays.enough > rays.least)) {  // each is a group
+    for (; r < end; ++r) {
+      if (r->most < rays.least)
+        faint += r->light;
+      else
+        visit(RayGroup{r, r->light, r->most});
+    }
+    return faint;
+  }
+  while (r < end) {
+    RayGroup group = {r, {0, 0, 0}, 0};
+    for (; r < end; ++r) {
+      if (r->most < rays.least) {
+        faint += r->light;
+        continue;
+      }
+      if (r->most > group.ray->most) group.ray = r;
+      group.light += r->light, group.most += r->most;
+      if (!(group.most < rays.enough)) {
+        ++r;
+        break;
+      }
+    }
+    if (group.most > 0) visit(group);
+  }
+  return faint;
 }
 
 // Rays run to a point each, so that no shaft would hold many: each is traced by itself.
@@ -63,18 +110,13 @@ void gather_interleaved(const FrameData& frame, const InterleavedPoints& points,
       sum->lit = sum->open;
       continue;
     }
-    Vec3 faint = {0, 0, 0};
     float traced = 0, arrived = 0;
-    for (const InterleavedRay* r = found.sent; r < found.sent + found.count; ++r) {
-      if (r->most < found.least) {
-        faint += r->light;
-        continue;
-      }
+    const Vec3 faint = each_group(found, [&](const RayGroup& group) {
       ++*rays;
-      traced += r->most;
-      if (frame.first_rays->occluded(frame.accel, r->ray, filter, stats)) continue;
-      sum->lit += r->light, arrived += r->most;
-    }
+      traced += group.most;
+      if (frame.first_rays->occluded(frame.accel, group.ray->ray, filter, stats)) return;
+      sum->lit += group.light, arrived += group.most;
+    });
     if (arrived == traced)
       sum->lit = sum->open;
     else if (arrived > 0)
@@ -87,8 +129,7 @@ std::uint32_t list_source_rays(const Source& source, const Surface& surface, std
   InterleavedRays found;
   find_sources(source, surface, place, &found);
   std::uint32_t count = 0;
-  for (const InterleavedRay* r = found.sent; r < found.sent + found.count; ++r)
-    if (!(r->most < found.least)) rays[count++] = {r->source, r->ray};
+  each_group(found, [&](const RayGroup& group) { rays[count++] = {group.ray->source, group.ray->ray}; });
   return count;
 }
 

@@ -13,6 +13,10 @@
 
 namespace pocketray {
 
+// Whether pixels have rays that are neither known nor recorded.
+constexpr bool is_compensated(const Quality& quality, EffectMask mask) {
+  return has(mask, Effect::instant_radiosity) && quality.compensation == Compensation::rays;
+}
 // Effects by which pixels depend on each other in ways that are not followed.
 constexpr EffectMask kNotFollowed = bit(Effect::selective) | bit(Effect::undersampling);
 // The same in the paper's way, whose tables do not tell which pixels a ray's light is given to.

@@ -68,26 +68,22 @@ double power_of(const VirtualLights& lights) {
 // Goal: the stated bias of the bounded geometry term. Method: virtual lights on rings of a plane at height h; with the
 // term clamped at b, E / (πL) = 2s − s², s = h√b.
 TEST_CASE("hard_41_clamped_virtual_lights_of_a_plane") {
-  VirtualLights lights;
-  lights.geometry_max = 2;
   constexpr double kHeight = 0.3, kStep = 1e-3;
   double sum = 0;
   Vec3 to_light;
   for (double r = kStep / 2; r < 300; r += kStep * (r < 3 ? 1 : r / 3)) {
     double ring = 2 * kPi * r * kStep * (r < 3 ? 1 : r / 3);
     VirtualLight light = {{static_cast<float>(r), static_cast<float>(kHeight), 0}, {0, -1, 0}, {1, 1, 1}};
-    sum += ring * static_cast<double>(virtual_irradiance(lights, light, {0, 0, 0}, {0, 1, 0}, &to_light).y);
+    sum += ring * static_cast<double>(virtual_irradiance(light, 2, {0, 0, 0}, {0, 1, 0}, &to_light).y);
   }
   CHECK(sum / kPi == doctest::Approx(0.668528).epsilon(2e-3));
 }
 
 // Goal: degenerate and back-facing lights give nothing, and nothing infinite. Method: HARDCASES row 42, single lights.
 TEST_CASE("hard_42_virtual_lights_at_and_behind_a_point") {
-  VirtualLights lights;
-  lights.geometry_max = 5;
   Vec3 to_light;
   auto from = [&](const Vec3& position, const Vec3& normal) {
-    return virtual_irradiance(lights, {position, normal, {1, 1, 1}}, {0, 0, 0}, {0, 1, 0}, &to_light).y;
+    return virtual_irradiance({position, normal, {1, 1, 1}}, 5, {0, 0, 0}, {0, 1, 0}, &to_light).y;
   };
   CHECK(from({0, 0, 0}, {0, -1, 0}) == 0);
   CHECK(from({0, 1, 0}, {0, 1, 0}) == 0);
@@ -132,15 +128,16 @@ TEST_CASE("instant_radiosity_fills_a_room") {
 }
 
 // Goal: a pixel is the same bits however the frame is divided. Method: a scene with edges, a curved surface and a
-// mirror; the whole frame against rows, single pixels, spans at odd places and rays one by one; with two samples, and
-// with an orthographic camera.
+// mirror; the whole frame against rows, single pixels, spans at odd places and rays one by one; with two samples,
+// compensated, and with an orthographic camera.
 TEST_CASE("instant_radiosity_does_not_depend_on_spans") {
   Room room(true);
-  for (std::uint32_t variant = 0; variant < 3; ++variant) {
+  for (std::uint32_t variant = 0; variant < 4; ++variant) {
     CAPTURE(variant);
     Settings settings = instant(64);
     if (variant == 1) settings.samples_per_pixel = 2;
-    if (variant == 2) {
+    if (variant == 2) settings.compensation = Compensation::rays;
+    if (variant == 3) {
       room.cameras[0].projection = Projection::orthographic, room.cameras[0].vertical_extent = 1.5f;
       room.bind();
     }
@@ -173,7 +170,9 @@ TEST_CASE("instant_radiosity_does_not_depend_on_spans") {
 // Goal: no epsilon depends on the scene's size (HARDCASES row 29). Method: the same scene scaled by powers of two.
 TEST_CASE("instant_radiosity_of_scaled_scenes_is_the_same") {
   Room room(true);
-  std::unique_ptr<TestRenderer> t = rendered(room.scene, instant(64));
+  Settings settings = instant(64);
+  settings.compensation = Compensation::rays;
+  std::unique_ptr<TestRenderer> t = rendered(room.scene, settings);
   std::vector<Vec3> image(t->renderer.image.begin(), t->renderer.image.end());
   for (float scale : {0x1p-20f, 0x1p20f}) {
     CAPTURE(scale);
@@ -182,7 +181,7 @@ TEST_CASE("instant_radiosity_of_scaled_scenes_is_the_same") {
     scaled.cameras[0].eye = scaled.cameras[0].eye * scale, scaled.cameras[0].target = scaled.cameras[0].target * scale;
     scaled.lights[0].intensity = scaled.lights[0].intensity * (scale * scale);
     scaled.bind();
-    std::unique_ptr<TestRenderer> s = rendered(scaled.scene, instant(64));
+    std::unique_ptr<TestRenderer> s = rendered(scaled.scene, settings);
     std::size_t different = 0;
     for (std::size_t i = 0; i < image.size(); ++i) different += !same_pixel(s->renderer.image[i], image[i]);
     CHECK(different == 0);
@@ -367,4 +366,37 @@ TEST_CASE("instant_radiosity_of_an_empty_room_needs_no_shadows") {
   for (std::size_t i = 0; i < a->renderer.image.count; ++i)
     different += !same_pixel(a->renderer.image[i], b->renderer.image[i]);
   CHECK(different == 0);
+}
+
+// Goal: with many lights, some of them share a ray, and with few, none do. Method: a room with things in it; the rays
+// of 512 lights, and the mean difference; the same bits with 64.
+TEST_CASE("instant_radiosity_of_many_lights_shares_rays") {
+  Room room(true);
+  auto rays_of = [](const TestRenderer& t) {
+    std::uint64_t sum = 0;
+    for (const Tracer& tracer : t.renderer.tracers) sum += tracer.rays[static_cast<int>(RayKind::shadow)];
+    return static_cast<double>(sum);
+  };
+  for (std::uint32_t count : {64u, 512u}) {
+    Settings settings = instant(count);
+    std::unique_ptr<TestRenderer> shared = rendered(room.scene, settings);
+    settings.light_tolerance = 0;
+    std::unique_ptr<TestRenderer> every = rendered(room.scene, settings);
+    std::size_t different = 0;
+    double apart = 0, light = 0;
+    for (std::size_t i = 0; i < every->renderer.image.count; ++i) {
+      const Vec3 &a = shared->renderer.image[i], &b = every->renderer.image[i];
+      different += !same_pixel(a, b);
+      apart += static_cast<double>(max_component(abs(a - b))), light += static_cast<double>(max_component(b));
+    }
+    CAPTURE(apart / light);
+    if (count == 64) {
+      CHECK(different == 0);
+      CHECK(rays_of(*shared) == rays_of(*every));
+    } else {
+      CHECK(different > 0);
+      CHECK(apart < 0.02 * light);
+      CHECK(rays_of(*shared) < 0.7 * rays_of(*every));
+    }
+  }
 }

@@ -141,6 +141,8 @@ TEST_CASE("server_frames_follow_every_setting") {
     request.settings.indirect = indirect_choice(Effect::instant_radiosity), request.settings.virtual_lights = count;
     check(request, true);
   }
+  request.settings.compensation = Compensation::rays;
+  check(request, true);
   check(plain, true);
   check_and_back([](FrameRequest* r) { r->settings.forced_off = bit(Effect::shadow); });
   check_and_back([](FrameRequest* r) { r->camera_index = 1; });

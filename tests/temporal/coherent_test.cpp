@@ -129,6 +129,31 @@ TEST_CASE("virtual_lights_that_rest_are_followed") {
   REQUIRE(same_frames(pair, 28 / 30.0));  // back to where they were before the last frame
 }
 
+// Goal: with compensation, whose rays are not known, frames are whole and say so, whether memory is planned for it or
+// not. Method: a scene in which what moves is met by such rays; started without it, and with it.
+TEST_CASE("compensated_virtual_lights_are_traced_whole") {
+  Settings settings;
+  settings.width = 40, settings.height = 30;
+  settings.indirect = indirect_choice(Effect::instant_radiosity);
+  Pair pair = make_pair("seesaw", settings);
+  const CoherenceState& state = pair.coherent->renderer.coherence_state;
+  for (int frame = 20; frame < 22; ++frame) REQUIRE(same_frames(pair, frame / 30.0));
+  REQUIRE(state.whole_because == nullptr);
+  settings.compensation = Compensation::rays;
+  for (TestRenderer* t : {pair.coherent.get(), pair.whole.get()}) {
+    Settings changed = t->renderer.settings;
+    changed.compensation = Compensation::rays;
+    REQUIRE(change_settings(&t->renderer, changed).ok);
+  }
+  for (int frame = 22; frame < 26; ++frame) {
+    REQUIRE(same_frames(pair, frame / 30.0));
+    CHECK(std::string(state.whole_because) == "rays of compensation are not known");
+  }
+  Pair from_start = make_pair("seesaw", settings);
+  REQUIRE(same_frames(from_start, 0.8));
+  CHECK_FALSE(from_start.coherent->renderer.coherence_state.planned);
+}
+
 // Goal: a frame in which nothing changed costs no ray. Method: the same time twice.
 TEST_CASE("unchanged_frame_traces_nothing") {
   for (const char* scene : {"seesaw", "cornell", "cube"}) {

@@ -238,7 +238,8 @@ TEST_CASE("message_values_out_of_range_are_refused") {
       {MessageType::frame_request, 8 + 94, {2}},                           // normals
       {MessageType::frame_request, 8 + 95, {kIndirectChoiceCount}},        // indirect
       {MessageType::frame_request, 8 + 96, {5}},                           // reconstruction
-      {MessageType::frame_request, 8 + 99, nan},                           // selective
+      {MessageType::frame_request, 8 + 99, {2}},                           // compensation
+      {MessageType::frame_request, 8 + 100, nan},                          // selective
       {MessageType::frame_request, 8 + more + 109, {0, 0, 0x80, 0xBF}},    // exposure −1
       {MessageType::frame_request, 8 + more + 100, {1}},                   // an effect that is none, on
       {MessageType::frame_request, 8 + more + 108, {1}},                   // and off

@@ -1,0 +1,159 @@
+#include "shade/compensation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "base/check.h"
+#include "shade/filters.h"
+#include "shade/lights.h"
+#include "shade/virtual_light.h"
+
+namespace pocketray {
+namespace {
+
+// Of more lights, a place in the pattern looks at every n-th.
+constexpr std::uint32_t kLightsOfPlace = 16;
+
+// Light that arrives at a point if nothing is in the way.
+struct Candidate {
+  Vec3 irradiance;
+  Ray ray;
+  std::uint32_t emitter;  // that casts no shadow; kNone: none
+};
+
+// One of some candidates, chosen by what they contribute, and their sum.
+struct Choice {
+  float left;  // where in the sum it lies, in [0, 1)
+  float most = 0, sum = 0;
+  Candidate chosen = {};
+
+  // Keeps the new one with a probability of its share of the sum so far, and what is left of the number.
+  void add(const Candidate& candidate) {
+    const float own = max_component(candidate.irradiance);
+    if (!(own > 0)) return;
+    sum += own;
+    const float share = own / sum;
+    if (left < share) {
+      chosen = candidate, most = own;
+      left /= share;
+    } else {
+      left = (left - share) / (1 - share);
+    }
+    left = std::min(left, 1 - 0x1p-24f);
+  }
+};
+
+// Fractions of multiples of 1 / ρ and 1 / ρ², ρ³ = ρ + 1: evenly spread together [Roberts 2018].
+constexpr std::uint32_t kStepOfLights = 3242174889u, kStepOfVirtualLights = 2447445414u;
+float spread_number(std::uint32_t index, std::uint32_t step) {
+  return static_cast<float>((index + 1) * step >> 8) * 0x1p-24f;
+}
+
+// On the basis of Duff et al. [2017, listing 3].
+Vec3 about_normal(const Vec3& n, const Vec3& local) {
+  const float sign = std::copysign(1.0f, n.z), a = -1 / (sign + n.z), b = n.x * n.y * a;
+  const Vec3 tangent = {1 + sign * n.x * n.x * a, sign * b, -sign * n.x}, bitangent = {b, sign + n.y * n.y * a, -n.y};
+  return tangent * local.x + bitangent * local.y + n * local.z;
+}
+
+struct CompensationRays {
+  const FrameData& frame;
+  const VirtualLights& lights;
+  TraceStats* stats;
+  std::uint64_t* rays;
+  std::uint32_t place;  // in the pattern
+
+  // Of all that the candidates stand for: nothing, if the chosen one is blocked.
+  Vec3 arriving(const Choice& choice, float scale) const {
+    if (!(choice.sum > 0)) return {0, 0, 0};
+    if (has(frame.mask, Effect::shadow)) {
+      const ShadowContext context = {&frame, choice.chosen.emitter};
+      const HitFilter opaque = {frame.accept_opaque, &context, frame.filters_read_point};
+      const bool is_filtered = frame.filter_every_shadow || choice.chosen.emitter != kNone;
+      ++*rays;
+      if (frame.accel_info->occluded(frame.accel, choice.chosen.ray, is_filtered ? &opaque : nullptr, stats))
+        return {0, 0, 0};
+    }
+    return choice.chosen.irradiance * (choice.sum / choice.most * scale);
+  }
+
+  Vec3 from_lights(const Surface& s) const {
+    const std::uint32_t stride = (frame.lights.count + kLightsOfPlace - 1) / kLightsOfPlace;
+    Choice choice = {spread_number(place, kStepOfLights)};
+    for (int r = 0; r < frame.light_run_count; ++r) {
+      const LightRun& run = frame.light_runs[r];
+      // The first of the run that is `place` modulo the stride.
+      std::uint32_t i = run.begin + (place + stride - run.begin % stride) % stride;
+      for (; i < run.end; i += stride) {
+        const LightPoint& light = frame.lights[i];
+        LightSample sample;
+        if (!lights_up(frame, s, run, light, &sample) || is_below(s, sample.direction)) continue;
+        const Vec3 irradiance = sample.irradiance * dot(s.normal, sample.direction);
+        choice.add({irradiance, {safe_origin(s, 1), sample.to_light, sample.t_max}, light.material});
+      }
+    }
+    return arriving(choice, static_cast<float>(stride));
+  }
+
+  Vec3 from_virtual_lights(const Surface& s) const {
+    const Vec3 origin = safe_origin(s, 1);
+    Choice choice = {spread_number(place, kStepOfVirtualLights)};
+    for (std::uint32_t i = place; i < lights.count; i += kPatternPixels) {
+      Candidate candidate = {{0, 0, 0}, {}, kNone};
+      if (arrives(lights.light[i], lights.geometry_max, s, origin, &candidate.irradiance, &candidate.ray))
+        choice.add(candidate);
+    }
+    return arriving(choice, static_cast<float>(kPatternPixels));
+  }
+
+  // π times the light from a direction, by the share of it that the virtual lights lack.
+  Vec3 from(const Surface& receiver, const Vec3& direction) const {
+    const float cos_receiver = dot(receiver.normal, direction);
+    if (!(cos_receiver > 0) || is_below(receiver, direction)) return {0, 0, 0};
+    const float geometry_max = lights.first_geometry_max;
+    const Ray ray = {safe_origin(receiver, 1), direction, std::sqrt(cos_receiver / geometry_max)};
+    Hit hit;
+    ++*rays;
+    frame.first_rays->closest(frame.accel, ray, visible_filter(frame), &hit, stats);
+    if (hit.triangle == kNoTriangle) return {0, 0, 0};
+    Surface s;
+    frame.first_surface(frame, ray, hit, &s);
+    const float cosines = cos_receiver * -dot(s.geometric, direction), bounded = geometry_max * hit.t * hit.t;
+    if (is_zero(s.diffuse) || !(cosines > bounded)) return {0, 0, 0};
+    return s.diffuse * (from_lights(s) + from_virtual_lights(s)) * (1 - bounded / cosines);
+  }
+};
+
+}  // namespace
+
+Vec3 compensation_direction(std::uint32_t place_in_pattern) {
+  CHECK_LT(place_in_pattern, kPatternPixels);
+  // (0, 2)-sequence [Sobol 1967]: the bits mirrored, and by Pascal's triangle.
+  const std::uint32_t b0 = place_in_pattern & 1, b1 = place_in_pattern >> 1 & 1, b2 = place_in_pattern >> 2 & 1,
+                      b3 = place_in_pattern >> 3;
+  const std::uint32_t ring = b0 * 8 + b1 * 4 + b2 * 2 + b3, sector = b0 * 8 ^ b1 * 12 ^ b2 * 10 ^ b3 * 15;
+  constexpr float kCosine[] = {0.98078528f, 0.83146961f, 0.55557023f, 0.19509032f};  // of odd multiples of π / 16
+  float x = kCosine[sector & 3], y = kCosine[3 - (sector & 3)];
+  if (sector & 4) x = -std::exchange(y, x);
+  if (sector & 8) x = -x, y = -y;
+  const float square = (static_cast<float>(ring) + 0.5f) / kPatternPixels, sine = std::sqrt(square);
+  return {sine * x, sine * y, std::sqrt(1 - square)};
+}
+
+void add_compensation(const FrameData& frame, const InterleavedPoints& points, TraceStats* stats, std::uint64_t* rays,
+                      InterleavedLight* light) {
+  CHECK_LE(points.count, kPacketMax);
+  const VirtualLights& lights = *virtual_lights_of(frame.indirect);
+  if (!(lights.first_geometry_max > 0)) return;
+  for (std::uint32_t i = 0; i < points.count; ++i) {
+    const Surface& s = *points.surface[i];
+    if (is_zero(s.diffuse)) continue;
+    const std::uint32_t place = points.place[i];
+    const Vec3 light_lacking = CompensationRays{frame, lights, stats, rays, place}.from(
+        s, about_normal(s.normal, compensation_direction(place)));
+    light[i].lit += light_lacking * (1.0f / kPatternPixels);
+  }
+}
+
+}  // namespace pocketray

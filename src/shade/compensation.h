@@ -1,0 +1,20 @@
+// The light that virtual lights lack by the bound of their geometry term G [Kollig & Keller 2004, "Illumination in the
+// Presence of Weak Singularities"]: of the light that a nearby surface sends, the share max(0, G − G_max) / G, found by
+// rays that end where G must fall below its bound.
+#pragma once
+#include "shade/interleaved.h"
+
+namespace pocketray {
+
+// Adds a sixteenth of it to what arrives at each of the pixels. A pixel has one ray, in the direction of its place in
+// the pattern: pixels that share their light have sixteen, spread evenly. What a ray meets is lit by one light and by
+// one virtual light, chosen by what they contribute, with a shadow ray each; it is not compensated itself, but its
+// virtual lights have the higher bound.
+void add_compensation(const FrameData& frame, const InterleavedPoints& points, TraceStats* stats, std::uint64_t* rays,
+                      InterleavedLight* light);
+
+// The direction of a place in the pattern, about the third axis. Their density is the cosine of the angle with it: as
+// many lie in each ring of equal weight and in each sector, and each 2 × 2 pixels have all quarters of both.
+Vec3 compensation_direction(std::uint32_t place_in_pattern);
+
+}  // namespace pocketray

@@ -1,0 +1,125 @@
+// Groups of interleaved sources that share a shadow ray.
+#include "shade/interleaved_rays.h"
+
+#undef CHECK
+#undef CHECK_EQ
+#undef CHECK_NE
+#undef CHECK_LT
+#undef CHECK_LE
+#undef CHECK_GT
+#undef CHECK_GE
+#include <doctest/doctest.h>
+
+#include <memory>
+
+#include "base/rng.h"
+
+using namespace pocketray;
+
+namespace {
+
+// Sources of random brightness above a floor, of which one is hidden.
+struct RandomSources {
+  static constexpr float kFaint = 0;
+  std::uint32_t count;
+  float tolerance;
+  const float* brightness;
+
+  bool arrives(std::uint32_t index, const Surface&, const Vec3& origin, Vec3* light, Ray* ray) const {
+    *light = Vec3{1, 0.5f, 0.25f} * brightness[index];
+    *ray = {origin, {static_cast<float>(index), 1, 0}, 1};
+    return *light != Vec3{0, 0, 0};
+  }
+};
+
+struct HalfFaintSources : RandomSources {
+  static constexpr float kFaint = 0.5f;
+};
+
+std::uint32_t hidden_source;
+bool hides(const Accel&, const Ray& ray, const HitFilter*, TraceStats*) {
+  return ray.direction.x == static_cast<float>(hidden_source);
+}
+
+struct Gathering {
+  AccelTraversal rays = {};
+  FrameData frame;
+  Surface surface = {};
+  float brightness[kInterleavedSourceMax];
+
+  explicit Gathering(std::uint32_t seed) {
+    rays.occluded = hides, frame.first_rays = &rays;
+    surface.diffuse = {1, 1, 1};
+    Rng rng = make_rng(seed);
+    for (float& b : brightness) {
+      const float u = next_float(&rng);
+      b = u < 0.1f ? 0 : u * u * u;  // few are bright
+    }
+  }
+
+  template <class Source>
+  InterleavedLight of(const Source& source, std::uint32_t place, std::uint64_t* ray_count) const {
+    const Surface* surfaces[] = {&surface};
+    const std::uint8_t places[] = {static_cast<std::uint8_t>(place)};
+    TraceStats stats;
+    InterleavedLight light;
+    *ray_count = 0;
+    gather_interleaved(frame, {1, surfaces, places}, source, true, &stats, ray_count, &light);
+    return light;
+  }
+};
+
+}  // namespace
+
+// Goal: a ray that stands for some sources errs by less than the tolerance's share of the light, and there are few rays
+// however many sources [Walter05]. Method: random sources, each hidden in turn; against a ray to every source.
+TEST_CASE("ray_groups_err_less_than_the_tolerance") {
+  std::uint64_t saved = 0;
+  for (std::uint32_t seed = 1; seed <= 8; ++seed) {
+    const auto gathering = std::make_unique<Gathering>(seed);
+    for (std::uint32_t count : {16u, 64u, 256u, 512u})
+      for (float tolerance : {0.0f, 0.0625f, 0.25f, 1.0f}) {
+        CAPTURE(count);
+        CAPTURE(tolerance);
+        const std::uint32_t place = seed;
+        const RandomSources grouped = {count, tolerance, gathering->brightness};
+        const RandomSources every = {count, 0, gathering->brightness};
+        std::uint64_t ray_count, all_count;
+        for (hidden_source = place; hidden_source < count; hidden_source += kPatternPixels) {
+          const InterleavedLight light = gathering->of(grouped, place, &ray_count),
+                                 exact = gathering->of(every, place, &all_count);
+          CHECK(max_component(abs(light.lit - exact.lit)) <= (tolerance + 1e-5f) * light.open.x);
+          CHECK(light.open == exact.open);
+          if (tolerance > 0) CHECK(static_cast<float>(ray_count) <= 1 + 1 / tolerance);
+          CHECK(ray_count <= all_count);
+          saved += all_count - ray_count;
+        }
+        hidden_source = kNone;  // all of it arrives, to the last bit
+        const InterleavedLight open = gathering->of(grouped, place, &ray_count);
+        CHECK(open.lit == open.open);
+      }
+  }
+  CHECK(saved > 10000);
+}
+
+// Goal: the rays that are listed, for coherence, are those that are traced. Method: as many, and each that changes the
+// light when it is hidden is among them; with sources too faint for a ray, too.
+TEST_CASE("ray_groups_are_listed_as_traced") {
+  const auto gathering = std::make_unique<Gathering>(5);
+  for (std::uint32_t count : {48u, 512u})
+    for (float tolerance : {0.0f, 0.0625f, 0.25f}) {
+      const HalfFaintSources source = {{count, tolerance, gathering->brightness}};
+      SourceRay listed[kSourcesOfPixelMax];
+      const std::uint32_t listed_count = list_source_rays(source, gathering->surface, 3, listed);
+      std::uint64_t ray_count;
+      hidden_source = kNone;
+      const InterleavedLight open = gathering->of(source, 3, &ray_count);
+      CHECK(ray_count == listed_count);
+      for (hidden_source = 3; hidden_source < count; hidden_source += kPatternPixels) {
+        bool is_listed = false;
+        for (std::uint32_t i = 0; i < listed_count; ++i) is_listed = is_listed || listed[i].source == hidden_source;
+        const bool changes = gathering->of(source, 3, &ray_count).lit != open.lit;
+        CHECK(changes == is_listed);
+      }
+    }
+}
