@@ -3,6 +3,7 @@
 #include <cstdlib>
 
 #include "accel/accel_list.h"
+#include "engine/light_map.h"
 #include "scene/builtin/builtin.h"
 
 namespace pocketray {
@@ -229,6 +230,24 @@ void add_servers_options(Command command, ServersOptions* o) {
           "--near-lossless", o->near_lossless,
           "let servers send pixels of which each channel is off by one level of its format, for about half of the "
           "bytes; otherwise every pixel is exact")
+      .group(group);
+  command
+      .add_option(
+          "--split", o->split,
+          "what a frame is shared by: rows, which has the pixels of the device alone; effect: the device renders "
+          "every pixel without --indirect, a server that light at fewer pixels; auto: whichever is faster")
+      .one_of({"rows", "effect", "auto"})
+      .default_str("rows")
+      .group(group);
+  command.add_option("--light-pitch", o->light_pitch, "with --split: pixels between those of a server's light, 2 … 16")
+      .range(kLightPitchMin, kLightPitchMax)
+      .default_str("6")
+      .group(group);
+  command
+      .add_option("--light-every", o->light_every,
+                  "with --split: frames of a moving view for which one map of a server's light is used, 1 … 60")
+      .range(1u, kLightEveryMax)
+      .capture_default_str()
       .group(group);
   command.add_option("--price", o->price, "price of 10^6 bytes from a server, in any unit").group(group);
   command.add_option("--energy-pixel", o->energy_pixel, "cost of rendering a pixel on the device, in that unit")

@@ -6,6 +6,7 @@
 #include "session/note.h"
 
 namespace pocketray {
+
 namespace {
 
 constexpr float kEndedWeightTold = 0x1p-8f;  // less is no display level of light as bright as white
@@ -16,6 +17,10 @@ void print_share(const Servers& servers, std::uint32_t width) {
   double rows = static_cast<double>(t.device_rows + t.server_rows), frames = static_cast<double>(t.frames);
   std::printf("  render servers: the device rendered %.0f %% of the rows, servers sent %.1f kB per frame",
               100 * static_cast<double>(t.device_rows) / rows, static_cast<double>(t.bytes_in) * 1e-3 / frames);
+  if (t.effect_frames > 0)
+    std::printf("; %.0f frames were shared by effect, %.0f of them with a server's light, of %.1f kB per frame",
+                static_cast<double>(t.effect_frames), static_cast<double>(t.lit_frames),
+                static_cast<double>(t.light_bytes) * 1e-3 / static_cast<double>(t.effect_frames));
   if (t.device_rows > 0)
     std::printf("; the device traced %.1f %% of its pixels",
                 100 * static_cast<double>(t.device_pixels) / (static_cast<double>(t.device_rows) * width));
@@ -69,6 +74,32 @@ void print_summary(const RenderSummary& s) {
   if (s.budget) print_budget(*s.budget, s.frame_count == 1);
 }
 
+namespace {
+
+Json share_json(const Servers& servers) {
+  const ServersTotals t = servers.backend->totals(servers);
+  const EffectTimes& e = t.effect_times;
+  auto ms = [](double ns) { return ns > 0 ? Json(ns * 1e-6) : Json(); };
+  return {{"frames", t.frames},
+          {"device_rows", t.device_rows},
+          {"server_rows", t.server_rows},
+          {"bytes_in", t.bytes_in},
+          {"bytes_out", t.bytes_out},
+          {"split",
+           {{"effect_frames", t.effect_frames},
+            {"lit_frames", t.lit_frames},
+            {"light_bytes", t.light_bytes},
+            {"rows_ms", ms(t.rows_ns)},
+            {"effect_ms", ms(t.effect_ns)},
+            {"prepare_ms", ms(e.prepare_ns)},
+            {"device_ms", ms(e.device_ns)},
+            {"server_ms", ms(e.server_ns)},
+            {"transfer_ms", ms(e.transfer_ns)},
+            {"add_ms", ms(e.add_ns)}}}};
+}
+
+}  // namespace
+
 Json to_json(const RenderSummary& s) {
   const Renderer& renderer = *s.renderer;
   Tracer counts = total_counts(renderer);
@@ -93,6 +124,7 @@ Json to_json(const RenderSummary& s) {
           {"exposure", renderer.exposure},
           {"memory", memory_json(renderer.memory)},
           {"effects", effects_json(renderer.effects)},
+          {"servers", s.servers ? share_json(*s.servers) : Json()},
           {"coherence", s.coherent ? coherence_json(*s.coherent) : Json()},
           {"budget", s.budget ? budget_json(*s.budget) : Json()}};
 }

@@ -12,19 +12,24 @@
 #include "present/hud_text.h"
 #include "present/pack.h"
 #include "session/open_scene.h"
+#include "split/effect_choice.h"
 
 namespace pocketray {
 
 constexpr double kBestShare = -1;
 constexpr int kVerifyAuto = -1;
+constexpr std::uint32_t kLightEveryMax = 60;  // chosen: longer, and light lags by seconds
 
 struct ServersOptions {
   std::vector<std::string> addresses;
   std::string key;  // file of the key that encrypts the links; empty: they are not encrypted
   double device_share = kBestShare;
-  int verify = kVerifyAuto;    // servers' pixels to check per frame
-  bool coarse_first = false;   // long frames begin with a coarse picture
-  bool near_lossless = false;  // servers' pixels may be off by a level of their format in each channel
+  int verify = kVerifyAuto;       // servers' pixels to check per frame
+  bool coarse_first = false;      // long frames begin with a coarse picture
+  bool near_lossless = false;     // servers' pixels may be off by a level of their format in each channel
+  std::string split = "rows";     // rows, effect or auto
+  std::uint32_t light_pitch = 0;  // pixels between lights of a map; 0: the default
+  std::uint32_t light_every = 1;  // frames of a moving view to a map
   double price = 0, energy_pixel = 0, energy_byte = 0, cost_weight_ms = 0, cost_cap = 0;
 };
 
@@ -57,6 +62,9 @@ struct ServersTotals {
   std::uint64_t unchanged_frames = 0;  // equal to the frame before: nothing was requested
   std::uint64_t checked = 0;           // servers' pixels checked, or rows if the device has no scene
   std::uint32_t lies = 0;              // servers caught with wrong pixels
+  std::uint64_t effect_frames = 0, lit_frames = 0, light_bytes = 0;  // shared by effect, with light, and that light's
+  double effect_ns = 0, rows_ns = 0;  // of a frame, as expected last of either way; 0: unknown
+  EffectTimes effect_times;           // of the way by effect
   bool checks_rows = false;
   double caught_row = 0;              // lowest probability of catching one wrong row per frame, over all servers
   double local_ns = 0, known_ns = 0;  // predicted for the device alone, and measured; only frames with a prediction

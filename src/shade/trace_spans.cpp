@@ -2,11 +2,10 @@
 
 #include "base/check.h"
 #include "shade/camera.h"
-#include "shade/contact.h"
 #include "shade/even_points.h"
 #include "shade/filters.h"
+#include "shade/indirect_light.h"
 #include "shade/strip.h"
-#include "shade/surface.h"
 #include "shade/tile.h"
 
 namespace pocketray {
@@ -21,36 +20,16 @@ Vec3 pixel_aov(Tracer* tracer, std::uint32_t column, std::uint32_t row, Aov aov)
     pixel_radiance(tracer, column, row);
     return same(static_cast<float>(tracer->stats.nodes - before.nodes + tracer->stats.triangles - before.triangles));
   }
+  if (aov == Aov::indirect_light) return pixel_indirect_light(tracer, column, row);
   Ray ray = camera_ray(frame.camera, static_cast<float>(column) + 0.5f, static_cast<float>(row) + 0.5f);
   ++tracer->rays[static_cast<int>(RayKind::primary)];
-  float passed = 0;  // distance to the culled surfaces passed
-  for (std::uint32_t layer = 0; layer < kTransparentLayerMax; ++layer) {
-    Hit hit;
-    frame.accel_info->closest(frame.accel, ray, visible_filter(frame), &hit, &tracer->stats);
-    if (hit.triangle == kNoTriangle) break;
-    Surface s;
-    frame.surface(frame, ray, hit, &s);
-    if (culls(*s.material, s.front, frame.mask)) {  // a face that touches its back may be visible
-      Contact contact;
-      gather_contact(frame, s, hit, visible_filter(frame), &contact, &tracer->stats);
-      for (std::uint32_t i = 1; i < contact.count; ++i) {
-        const Face& face = contact.face[i];
-        if (culls(frame.scene->materials[face.material], face.front, frame.mask)) continue;
-        float t = hit.t;
-        hit = face.hit;
-        hit.t = t;
-        frame.surface(frame, ray, hit, &s);
-        break;
-      }
-    }
-    if (!culls(*s.material, s.front, frame.mask)) {
-      if (aov == Aov::depth) return same(passed + hit.t);
-      return aov == Aov::triangle ? same(static_cast<float>(hit.triangle + 1)) : s.normal;
-    }
-    passed += hit.t;
-    ray.origin = safe_origin(s, -1);
-  }
-  return {0, 0, 0};
+  Hit hit;
+  frame.accel_info->closest(frame.accel, ray, visible_filter(frame), &hit, &tracer->stats);
+  Surface s;
+  float passed;
+  if (!visible_surface(tracer, &ray, &hit, &s, &passed)) return {0, 0, 0};
+  if (aov == Aov::depth) return same(passed + hit.t);
+  return aov == Aov::triangle ? same(static_cast<float>(hit.triangle + 1)) : s.normal;
 }
 
 // Appends the tile's pixels in Morton order.

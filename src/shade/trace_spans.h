@@ -5,8 +5,8 @@
 
 namespace pocketray {
 
-// The quantity that --aov writes instead of colour.
-enum class Aov { none, depth, normal, triangle, cost };
+// The quantity that --aov writes instead of colour; indirect_light is only for devices that share frames by effect.
+enum class Aov { none, depth, normal, triangle, cost, indirect_light };
 
 // A tracer for the frame.
 Tracer make_tracer(const FrameData& frame);
@@ -23,7 +23,7 @@ std::uint32_t strip_span_count(const Span* spans, std::uint32_t span_count);
 // columns of the spans count every `pitch`-th one of the picture: those of a grid, from its first pixel on. With an
 // AOV: depth is the distance along the ray (0 without a hit), normal the world-space shading normal, triangle the id +
 // 1 (0: none), cost the number of boxes and triangles visited by all rays of the pixel, each traced separately; scalars
-// fill all three channels.
+// fill all three channels; indirect_light as in indirect_light.h.
 void trace_spans(Tracer* tracer, const Span* spans, std::uint32_t span_count, Aov aov, Vec3* image,
                  std::uint32_t pitch = 1);
 

@@ -15,58 +15,6 @@ namespace {
 constexpr std::uint32_t kMagic = 0x59415250;  // "PRAY"
 constexpr std::uint32_t kChecksumAt = 4;
 
-// Integers, bools and enumerations of `byte_count` bytes.
-template <class Io, class T>
-void number(Io& io, T* value, std::uint32_t byte_count = sizeof(T)) {
-  std::uint64_t bits = static_cast<std::uint64_t>(*value);
-  io.integer(&bits, byte_count);
-  *value = static_cast<T>(bits);
-}
-template <class Io, class T>
-void choice(Io& io, T* value, T last) {
-  std::uint64_t bits = static_cast<std::uint64_t>(*value);
-  io.integer(&bits, sizeof(T));
-  io.require(bits <= static_cast<std::uint64_t>(last));
-  *value = static_cast<T>(bits);
-}
-// A number rounded down to 11 significant bits: these, below 5 bits of how far they are shifted.
-template <class Io>
-void rounded(Io& io, std::uint32_t* value) {
-  constexpr std::uint32_t kBits = 11, kShiftMax = 32 - kBits;
-  const std::uint32_t length = *value > 0 ? 32 - static_cast<std::uint32_t>(__builtin_clz(*value)) : 0;
-  std::uint32_t shift = length > kBits ? length - kBits : 0;
-  std::uint64_t bits = *value >> shift | shift << kBits;
-  io.integer(&bits, 2);
-  const std::uint32_t kept = static_cast<std::uint32_t>(bits) & ((1u << kBits) - 1);
-  shift = static_cast<std::uint32_t>(bits >> kBits);
-  io.require(shift <= kShiftMax && (shift == 0 || kept >> (kBits - 1) != 0));
-  *value = shift <= kShiftMax ? kept << shift : 0;
-}
-template <class Io>
-void raw_real(Io& io, float* value) {
-  std::uint32_t bits;
-  std::memcpy(&bits, value, sizeof bits);
-  number(io, &bits);
-  std::memcpy(value, &bits, sizeof bits);
-}
-template <class Io>
-void raw_real(Io& io, double* value) {
-  std::uint64_t bits;
-  std::memcpy(&bits, value, sizeof bits);
-  number(io, &bits);
-  std::memcpy(value, &bits, sizeof bits);
-}
-// A number within the limits of its quantity.
-template <class Io, class T>
-void real(Io& io, T* value, Quantity quantity) {
-  raw_real(io, value);
-  io.require(within(quantity, *value));
-}
-template <class Io, class T>
-void count(Io& io, T* value, Quantity quantity, std::uint32_t byte_count = sizeof(T)) {
-  number(io, value, byte_count);
-  io.require(within(quantity, static_cast<double>(*value)));
-}
 // 0 means the scene's own.
 template <class Io>
 void own_or_exposure(Io& io, float* value) {
@@ -184,6 +132,8 @@ void fields(Io& io, FrameRequest* m) {
   io.require(m->chunk_rows >= 1);
   choice(io, &m->coding, RowCoding::near_lossless);
   choice(io, &m->coarse_first, true);
+  number(io, &m->light_pitch);
+  io.require(m->light_pitch == 0 || (m->light_pitch >= kLightPitchLow && m->light_pitch <= kLightPitchHigh));
   row_fields(io, m, m->settings.height);
 }
 
@@ -220,6 +170,12 @@ template <class Io>
 void fields(Io& io, CoarsePicture* m) {
   number(io, &m->frame, 2);
   io.tail(&m->pixels);
+}
+template <class Io>
+void fields(Io& io, LightMapMessage* m) {
+  number(io, &m->frame, 2), rounded(io, &m->light_ps);
+  count(io, &m->price, Quantity::price);
+  io.tail(&m->bytes);
 }
 template <class Io>
 void fields(Io& io, Cancel* m) {
@@ -295,6 +251,8 @@ void fields_of_type(Io& io, Message* m) {
       return change_fields(io, &m->frame_request);
     case MessageType::coarse_picture:
       return fields(io, &m->coarse_picture);
+    case MessageType::light_map:
+      return fields(io, &m->light_map);
   }
 }
 
@@ -310,7 +268,7 @@ constexpr PayloadSize kPayloadSizes[] = {
     {96, 0},                                         // scene_entry
     {28, 0},                                         // scene_fetch
     {24, kPieceBytesMax},                            // scene_piece
-    {93 + kSettingsBytes, kRunBytes* kRunCountMax},  // frame_request
+    {94 + kSettingsBytes, kRunBytes* kRunCountMax},  // frame_request
     {9, 4 + kChunkBytesMax},                         // row_chunk
     {4, 0},                                          // cancel
     {6, 0},                                          // error
@@ -320,9 +278,10 @@ constexpr PayloadSize kPayloadSizes[] = {
     {108, 0},                                        // view_entry
     {41, kRunBytes* kRunCountMax},                   // frame_change
     {2, kChunkBytesMax},                             // coarse_picture
+    {6, kChunkBytesMax},                             // light_map
 };
 constexpr std::uint32_t kTypeCount = sizeof kPayloadSizes / sizeof kPayloadSizes[0];
-static_assert(kTypeCount == static_cast<std::uint32_t>(MessageType::coarse_picture) + 1, "one for each type");
+static_assert(kTypeCount == static_cast<std::uint32_t>(MessageType::light_map) + 1, "one for each type");
 
 // A hello of another version ends after magic and version, or continues in any way.
 constexpr std::uint32_t kForeignHelloBytesMin = 6, kForeignHelloBytesMax = 256;
@@ -333,6 +292,7 @@ std::uint32_t tail_bytes(const Message& m) {
     return (m.row_chunk.price != 0 ? 2u : 0) + (m.row_chunk.prepare_ns != 0 ? 2u : 0) + m.row_chunk.bytes.count;
   if (m.type == MessageType::pong) return m.pong.bytes.count;
   if (m.type == MessageType::coarse_picture) return m.coarse_picture.pixels.count;
+  if (m.type == MessageType::light_map) return m.light_map.bytes.count;
   if (m.type == MessageType::frame_request || m.type == MessageType::frame_change)
     return kRunBytes * m.frame_request.run_count;
   return 0;
@@ -416,6 +376,10 @@ std::uint32_t row_chunk_prefix_bytes(bool states_price, bool states_preparation)
 
 std::uint32_t coarse_prefix_bytes() {
   return kHeaderBytes + kPayloadSizes[static_cast<std::uint32_t>(MessageType::coarse_picture)].fields;
+}
+
+std::uint32_t light_map_prefix_bytes() {
+  return kHeaderBytes + kPayloadSizes[static_cast<std::uint32_t>(MessageType::light_map)].fields;
 }
 
 void take_change(const FrameRequest& change, FrameRequest* request) {

@@ -19,7 +19,7 @@ constexpr int settings_on_wire() {
   return count;
 }
 // Adding a setting to requests adds 1 to the version; for any other change of the format, raise the first number.
-constexpr std::uint16_t kWireVersion = 16 + (settings_on_wire() - 6);
+constexpr std::uint16_t kWireVersion = 18 + (settings_on_wire() - 6);
 constexpr std::uint32_t kHeaderBytes = 8;
 constexpr std::uint32_t kPieceBytesMax = 1u << 16;  // of a scene, per message
 constexpr std::uint32_t kPingBytesMax = 1u << 16;   // of a pong's payload
@@ -44,6 +44,7 @@ enum class MessageType : std::uint8_t {
   view_entry,      // server
   frame_change,    // device: a frame_request like the previous one
   coarse_picture,  // server: of a frame, before its rows
+  light_map,       // server: indirect light of a frame, instead of rows
 };
 
 struct Hello {
@@ -107,9 +108,10 @@ struct FrameRequest {
   std::uint16_t row_begin = 0, row_end = 0;
   std::uint16_t chunk_rows = 1;  // of a chunk, at most; no chunk has rows of two runs
   RowCoding coding = RowCoding::lossless;
-  bool coarse_first = false;   // a coarse picture of the whole frame may come before the rows
-  std::uint8_t run_count = 0;  // 0: all rows are one run
-  RowRun runs[kRunCountMax];   // from top to bottom; their places are a permutation of 0 … run_count − 1
+  bool coarse_first = false;     // a coarse picture of the whole frame may come before the rows
+  std::uint8_t light_pitch = 0;  // a light_map with a light every so many pixels comes instead of rows; 0: rows
+  std::uint8_t run_count = 0;    // 0: all rows are one run
+  RowRun runs[kRunCountMax];     // from top to bottom; their places are a permutation of 0 … run_count − 1
 };
 
 constexpr std::uint32_t kChunkRowsLimit = 255;  // of any chunk
@@ -150,6 +152,19 @@ constexpr std::uint32_t coarse_count(std::uint32_t pixel_count) {
 // Of the pixels of a coarse picture.
 constexpr std::uint32_t coarse_bytes(std::uint32_t width, std::uint32_t height, WireFormat format) {
   return coarse_count(width) * coarse_count(height) * pixel_bytes(format);
+}
+
+// Indirect light of every light_pitch-th pixel of every light_pitch-th row, before surfaces reflect it: irradiance / π
+// on what the pixel shows. Coded as light_coder.h describes.
+constexpr std::uint32_t kLightPitchLow = 2, kLightPitchHigh = 16;
+struct LightMapMessage {
+  std::uint32_t frame = 0;           // received: its low 16 bits
+  std::uint32_t light_ps = 0;        // server's work on a light, picoseconds; arrives up to .1 % lower
+  std::uint16_t price = kPriceUnit;  // as in a RowChunk
+  Array<const std::uint8_t> bytes;
+};
+constexpr std::uint32_t light_map_side(std::uint32_t pixel_count, std::uint32_t pitch) {
+  return (pixel_count + pitch - 1) / pitch;
 }
 
 struct Cancel {
@@ -217,6 +232,7 @@ struct Message {
   ViewQuery view_query;
   ViewEntry view_entry;
   CoarsePicture coarse_picture;
+  LightMapMessage light_map;
 };
 
 enum class DecodeState { need_more, message, malformed };
@@ -246,6 +262,8 @@ void encode_message(const Message& message, std::uint8_t* bytes);
 std::uint32_t row_chunk_prefix_bytes(bool states_price, bool states_preparation);
 // The same before the pixels of a coarse picture.
 std::uint32_t coarse_prefix_bytes();
+// The same before the lights of a light_map.
+std::uint32_t light_map_prefix_bytes();
 
 // Applies a frame_change to the previous request: number, time, camera, rows and their order, coarse picture.
 void take_change(const FrameRequest& change, FrameRequest* request);

@@ -3,6 +3,7 @@
 #include <cstring>
 
 #include "base/check.h"
+#include "base/limit_list.h"
 #include "wire/message.h"
 
 namespace pocketray {
@@ -76,4 +77,56 @@ struct Checker {
   void length_of(std::uint8_t* run_count) { require(*run_count <= kRunCountMax); }
 };
 
+// Integers, bools and enumerations of `byte_count` bytes.
+template <class Io, class T>
+void number(Io& io, T* value, std::uint32_t byte_count = sizeof(T)) {
+  std::uint64_t bits = static_cast<std::uint64_t>(*value);
+  io.integer(&bits, byte_count);
+  *value = static_cast<T>(bits);
+}
+template <class Io, class T>
+void choice(Io& io, T* value, T last) {
+  std::uint64_t bits = static_cast<std::uint64_t>(*value);
+  io.integer(&bits, sizeof(T));
+  io.require(bits <= static_cast<std::uint64_t>(last));
+  *value = static_cast<T>(bits);
+}
+// A number rounded down to 11 significant bits: these, below 5 bits of how far they are shifted.
+template <class Io>
+void rounded(Io& io, std::uint32_t* value) {
+  constexpr std::uint32_t kBits = 11, kShiftMax = 32 - kBits;
+  const std::uint32_t length = *value > 0 ? 32 - static_cast<std::uint32_t>(__builtin_clz(*value)) : 0;
+  std::uint32_t shift = length > kBits ? length - kBits : 0;
+  std::uint64_t bits = *value >> shift | shift << kBits;
+  io.integer(&bits, 2);
+  const std::uint32_t kept = static_cast<std::uint32_t>(bits) & ((1u << kBits) - 1);
+  shift = static_cast<std::uint32_t>(bits >> kBits);
+  io.require(shift <= kShiftMax && (shift == 0 || kept >> (kBits - 1) != 0));
+  *value = shift <= kShiftMax ? kept << shift : 0;
+}
+template <class Io>
+void raw_real(Io& io, float* value) {
+  std::uint32_t bits;
+  std::memcpy(&bits, value, sizeof bits);
+  number(io, &bits);
+  std::memcpy(value, &bits, sizeof bits);
+}
+template <class Io>
+void raw_real(Io& io, double* value) {
+  std::uint64_t bits;
+  std::memcpy(&bits, value, sizeof bits);
+  number(io, &bits);
+  std::memcpy(value, &bits, sizeof bits);
+}
+// A number within the limits of its quantity.
+template <class Io, class T>
+void real(Io& io, T* value, Quantity quantity) {
+  raw_real(io, value);
+  io.require(within(quantity, *value));
+}
+template <class Io, class T>
+void count(Io& io, T* value, Quantity quantity, std::uint32_t byte_count = sizeof(T)) {
+  number(io, value, byte_count);
+  io.require(within(quantity, static_cast<double>(*value)));
+}
 }  // namespace pocketray

@@ -10,9 +10,11 @@ constexpr std::uint32_t kLengthsMax = 8;  // bits of a number above 0
 constexpr int kNumberMax = (1 << kLengthsMax) - 1;
 
 // Of numbers from 1: how many bits follow the first, and the one that follows it. The others are even.
-struct NumberModel {
-  Probability length[kLengthsMax], second[kLengthsMax];
+template <std::uint32_t lengths_max>
+struct NumberModelOf {
+  Probability length[lengths_max], second[lengths_max];
 };
+using NumberModel = NumberModelOf<kLengthsMax>;
 
 constexpr std::uint32_t kPixelContexts = 64, kActivities = 4;
 
@@ -46,9 +48,10 @@ inline std::uint32_t bits_after_first(std::uint32_t value) {
   return 31u - static_cast<std::uint32_t>(__builtin_clz(value));
 }
 
-// A number from 1 that has at most `bits_max` bits, at most kLengthsMax. An encoder returns it, too.
-template <class Coder>
-std::uint32_t code_number(Coder* coder, NumberModel* model, std::uint32_t bits_max, std::uint32_t value) {
+// A number from 1 that has at most `bits_max` bits, at most lengths_max. An encoder returns it, too.
+template <class Coder, std::uint32_t lengths_max>
+std::uint32_t code_number(Coder* coder, NumberModelOf<lengths_max>* model, std::uint32_t bits_max,
+                          std::uint32_t value) {
   const std::uint32_t wanted = Coder::kEncodes ? bits_after_first(value) : 0;
   std::uint32_t length = 0;
   while (length + 1 < bits_max && coder->bit(&model->length[length], length < wanted)) ++length;

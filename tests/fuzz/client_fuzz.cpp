@@ -12,6 +12,7 @@
 #include "remote/client/frame.h"
 #include "remote/client/inquiry.h"
 #include "wire/codec.h"
+#include "wire/light_coder.h"
 #include "wire/row_sequence.h"
 
 POCKETRAY_FUZZ_TARGET(fuzz_client)
@@ -126,6 +127,20 @@ void send_coarse() {
   send(message);
 }
 
+void send_light() {
+  const FrameRequest& q = peer->request;
+  const LightGrid grid = light_grid(q.settings, q.light_pitch);
+  std::vector<Vec3> light(light_count(grid), Vec3{0.5f, 0.25f, 0.125f});
+  Bytes bytes(light_bytes_max(light.size()));
+  Message message;
+  message.type = MessageType::light_map;
+  message.light_map.frame = q.frame, message.light_map.light_ps = 10'000'000;
+  const std::size_t byte_count = encode_light(light.data(), grid.columns, grid.rows, 0, bytes.data());
+  message.light_map.bytes = {bytes.data(), static_cast<std::uint32_t>(byte_count)};
+  peer->due = RowSequence();
+  send(message);
+}
+
 void answer(const Message& asked) {
   static const std::uint8_t zeros[kPingBytesMax] = {};
   const StoredScene& stored = fuzz_store().scenes[0];
@@ -164,6 +179,7 @@ void answer(const Message& asked) {
       else
         peer->request = asked.frame_request;
       peer->due = first_rows(peer->request);
+      if (peer->request.light_pitch > 0) return send_light();
       return peer->request.coarse_first ? send_coarse() : void();
     case MessageType::cancel:
       peer->due = RowSequence();
@@ -230,11 +246,16 @@ void share_frames(FuzzInput* input, std::uint8_t flags) {
   o.has_scene = flags & 1;
   o.format = flags & 2 ? WireFormat::rgb888 : WireFormat::rgb565;
   o.coarse_after_ns = flags & 16 ? 1 : 0;
+  Settings settings = renderer->settings;
+  settings.indirect = flags & 32 ? indirect_choice(Effect::instant_radiosity) : IndirectChoice::automatic;
+  CHECK(change_settings(renderer, settings).ok);
+  o.light.split = flags & 32 ? SplitKind::effect : SplitKind::rows;
+  o.light.indirect = settings.indirect;
   o.pace.ns_per_pixel = kDeviceNs;
   o.silence_timeout_ns = o.prepare_timeout_ns = o.connect_timeout_ns = 300 * kMs;
   o.retry_ns_min = kMs, o.retry_ns_max = 20 * kMs;
   static Bytes memory;
-  memory.resize(client_need(renderer->settings, o.format, 1) + kArenaAlignment);
+  memory.resize(client_need(renderer->settings, o.format, 1, o.light) + kArenaAlignment);
   Arena arena = make_arena("client", memory.data(), memory.size());
   Client client;
   platform::LinkAddress address;
@@ -250,6 +271,7 @@ void share_frames(FuzzInput* input, std::uint8_t flags) {
       CHECK_LT(took, 20'000 * kMs);
     }
     fuzz_counts.frames += has_all_rows(client), fuzz_counts.coarse += client.coarse_shown;
+    fuzz_counts.lit += client.share.has_light;
     fuzz_counts.server_rows += client.share.server_rows[0];
     for (int i = 0; i < 4; ++i) advance_client(&client, 5 * kMs);
   }

@@ -42,6 +42,7 @@ Renderer* fuzz_renderer() {
     Settings settings;
     settings.width = kFuzzWidth, settings.height = kFuzzHeight;
     settings.memory_bytes = 8u << 20;
+    settings.indirect = indirect_choice(Effect::instant_radiosity);  // planned, so that clients may choose it
     test = make_renderer(built->scene, settings);
   }
   return &test->renderer;

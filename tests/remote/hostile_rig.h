@@ -35,9 +35,10 @@ struct HostileRig {
   std::uint32_t flood_count = 0;
   Client client;
 
-  explicit HostileRig(bool has_scene = true) {
+  explicit HostileRig(bool has_scene = true, const LightOptions& light = LightOptions()) {
     Settings settings;
     settings.width = kWidth, settings.height = kHeight;
+    settings.indirect = light.indirect;
     device = make_renderer(built->scene, settings);
     ClientOptions o;
     o.format = WireFormat::rgb565;
@@ -45,8 +46,8 @@ struct HostileRig {
     o.check_count = 0;  // its rows show no scene
     o.log = [](void* rig, const char* line) { static_cast<HostileRig*>(rig)->log.push_back(line); };
     o.log_context = this;
-    o.has_scene = has_scene;
-    memory.resize(client_need(settings, o.format, 1) + kArenaAlignment);
+    o.has_scene = has_scene, o.light = light;
+    memory.resize(client_need(settings, o.format, 1, light) + kArenaAlignment);
     Arena arena = make_arena("client", memory.data(), memory.size());
     REQUIRE(make_client(o, settings, builtin_hash("cube"), fake.link, &fake.address, 1, &arena, &client).ok);
   }

@@ -16,6 +16,7 @@ SplitRig::SplitRig(const SplitRigOptions& given) : options(given) {
   built = build_builtin(options.scene);
   Settings settings;
   settings.width = options.width, settings.height = options.height;
+  settings.indirect = options.client.light.indirect;
   whole = make_renderer(built->scene, settings);
   settings.coherence = options.coherence;
   device = make_renderer(built->scene, settings);
@@ -23,7 +24,7 @@ SplitRig::SplitRig(const SplitRigOptions& given) : options(given) {
   o.pace.ns_per_pixel = options.device_ns, o.pace.prepare_ns = options.device_prepare_ns;
   o.log = [](void* rig, const char* line) { static_cast<SplitRig*>(rig)->log.push_back(line); };
   o.log_context = this;
-  client_memory.resize(client_need(settings, o.format, options.server_count) + kArenaAlignment);
+  client_memory.resize(client_need(settings, o.format, options.server_count, o.light) + kArenaAlignment);
   Arena arena = make_arena("client", client_memory.data(), client_memory.size());
   status = make_client(o, settings, builtin_hash(options.scene), world.link, world.addresses.data(),
                        options.server_count, &arena, &client);

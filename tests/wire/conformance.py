@@ -127,6 +127,17 @@ def test_frames(program, folder, device, scenes):
         frame += 1
         device.frame(cornell, kind, frame=frame, **words)
         check(device.coarse == (device.picture.squares() if "coarse" in words else None), "a coarse picture: %s" % words)
+    # Maps of indirect light instead of rows: ambient light is the same everywhere, that of the scene. Beside the box
+    # there is nothing, where the first prediction goes on.
+    ambient = [struct.unpack("<I", struct.pack("<f", x))[0] + (1 << 17) >> 18 for x in (.075, .058, .036)]
+    for kind, pitch in ((FRAME_REQUEST, 8), (FRAME_CHANGE, 8), (FRAME_REQUEST, 5)):
+        frame += 1
+        lights = device.light(cornell, kind, pitch, frame=frame, indirect=2)
+        check(len(lights) == -(-48 // pitch) * -(-36 // pitch) and set(lights) == {tuple(ambient), (0, 0, 0)}, "light")
+    frame += 1
+    check(len(set(device.light(cornell, frame=frame, pitch=4, indirect=4))) > 50, "light of virtual lights")
+    frame += 1
+    device.frame(cornell, frame=frame)
     # Near-lossless rows, over several frames of a moving camera.
     for turn in range(4):
         frame += 1
@@ -208,7 +219,7 @@ def test_malformed(server, scenes):
               dict(cut_off=65.0), dict(filter=5), dict(normals=2), dict(indirect=5), dict(virtual_lights=0), dict(virtual_lights=513), dict(compensation=2), dict(reconstruction=5), dict(selective=1.5), dict(selective=-0.5), dict(resolution=5), dict(light_tolerance=1.5), dict(light_tolerance=-0.5), dict(environment_shadows=257), dict(on=1 << 63), dict(off=1 << len(EFFECTS)),
               dict(exposure=-1.0),
               dict(exposure=big), dict(exposure=8e-19), dict(dither=2), dict(format=2), dict(first=36), dict(first=9, end=9), dict(end=37),
-              dict(largest=0), dict(coding=3), dict(coarse=2)]
+              dict(largest=0), dict(coding=3), dict(coarse=2), dict(pitch=1), dict(pitch=17)]
     # Orders that are none: too few rows, too many, an empty run, a place twice, a place beyond the last, too many runs.
     orders = [((35, 0),), ((37, 0),), ((0, 0), (36, 1)), ((20, 0), (16, 0)), ((20, 0), (16, 2)), ((1, 0),) * 65]
     values += [dict(order=order) for order in orders]
@@ -218,9 +229,9 @@ def test_malformed(server, scenes):
     cases += [request(cube, VIEW_QUERY, measure=2), request(cube, VIEW_QUERY, samples=0)]
     cases += [message(SCENE_FETCH, cube + struct.pack("<QI", 0, 65537)), message(SCENE_FETCH, cube + struct.pack("<QI", MASK, 0)),
               message(PING, struct.pack("<II", 1, 65537)), message(ERROR, struct.pack("<HI", 0, 0)),
-              message(ERROR, struct.pack("<HI", 8, 0)), message(0), message(17), message(SCENE_LIST, b""),
+              message(ERROR, struct.pack("<HI", 8, 0)), message(0), message(18), message(SCENE_LIST, b""),
               message(SCENE_LIST, bytes(3)), message(ROW_CHUNK, bytes(600)), message(ROW_CHUNK, bytes(4) + b"\1\0\0\0\2"), hello()]
-    cases += [message(kind, bytes(size)) for kind, size in ((SCENE_ENTRY, 96), (SCENE_PIECE, 24), (PONG, 10), (COARSE_PICTURE, 14))]
+    cases += [message(kind, bytes(size)) for kind, size in ((SCENE_ENTRY, 96), (SCENE_PIECE, 24), (PONG, 10), (COARSE_PICTURE, 14), (LIGHT_MAP, 20))]
     good = message(PING, bytes(8))
     cases += [good[:i] + bytes([good[i] ^ 1]) + good[i + 1:] for i in range(3, len(good))]
     for data in cases:
@@ -229,8 +240,8 @@ def test_malformed(server, scenes):
         check(device.closed(waits=data is cases[0]), "malformed bytes end the connection")
         device.socket.close()
     for data, code in ((good, MALFORMED), (b"GET / HTTP/1.1\r\n\r\n", MALFORMED), (hello(3), WRONG_VERSION),
-                       (message(HELLO, b"PRAY\32\0"), WRONG_VERSION), (hello(26, bytes(234)), WRONG_VERSION),
-                       (message(HELLO, b"PRAY\32\0" + bytes(251)), MALFORMED), (hello(26, b"x"), MALFORMED),
+                       (message(HELLO, b"PRAY\34\0"), WRONG_VERSION), (hello(28, bytes(234)), WRONG_VERSION),
+                       (message(HELLO, b"PRAY\33\0" + bytes(251)), MALFORMED), (hello(27, b"x"), MALFORMED),
                        (message(HELLO, b"pray" + bytes(18)), MALFORMED), (message(HELLO, hello()[8:28] + b"\xff\0"), MALFORMED)):
         device = Device(server.address, greets=False)
         check(device.error(data, data.hex()[:80]) == (code, 0), "first message %s" % data[:16])

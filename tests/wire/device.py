@@ -4,7 +4,7 @@ import socket, struct, zlib
 
 MASK = 2**64 - 1
 HELLO, SCENE_LIST, SCENE_QUERY, SCENE_ENTRY, SCENE_FETCH, SCENE_PIECE, FRAME_REQUEST, ROW_CHUNK, CANCEL, ERROR, PING, PONG, \
-    VIEW_QUERY, VIEW_ENTRY, FRAME_CHANGE, COARSE_PICTURE = range(1, 17)
+    VIEW_QUERY, VIEW_ENTRY, FRAME_CHANGE, COARSE_PICTURE, LIGHT_MAP = range(1, 18)
 WRONG_VERSION, MALFORMED, UNKNOWN_SCENE, TOO_LARGE, BAD_REQUEST, BUSY, CLOSING = range(1, 8)
 RGB565, RGB888 = 0, 1
 RED, GREEN, BLUE = range(3)
@@ -114,6 +114,44 @@ class Code:
             return 1
         top = 2 | self.bit(model, (key, "second", length))
         return top << length - 1 | self.even_bits(length - 1)
+
+
+def median(left, below, corner):
+    """The prediction from neighbours."""
+    if corner >= max(left, below):
+        return min(left, below)
+    return max(left, below) if corner <= min(left, below) else left + below - corner
+
+
+def decode_light(data, columns, rows):
+    """Levels of red, green and blue of a light map."""
+    if len(data) == 6 * columns * rows:
+        return [struct.unpack_from("<3H", data, 6 * i) for i in range(columns * rows)]
+    code, model, values, sizes = Code(data), {}, [], []
+    for i in range(columns * rows):
+        left = i - 1 if i % columns else None
+        above = i - columns if i >= columns else None
+        near = [values[j] if j is not None else None for j in (left, above)]
+        corner = values[above - 1] if left is not None and above is not None else None
+        first = near[0] or near[1] or (0, 0, 0)
+        second = near[1] or first
+        third = corner or second if near[1] else first
+        value, size = [], []
+        for c in range(3):
+            activity = min(3, sum(sizes[j][c] for j in (left, above) if j is not None))
+            step = 0
+            if code.bit(model, (c, "differs", activity)):
+                falls = code.bit(model, (c, "falls", activity))
+                step = code.number(model, (c, activity), 14)
+                step = -step if falls else step
+            value.append(median(first[c], second[c], third[c]) + step)
+            size.append(abs(step))
+        values.append(tuple(value))
+        sizes.append(size)
+    check(code.at >= len(data), "all bytes of a light map are read")
+    levels = [(green + red, green, green + blue) for green, red, blue in values]
+    check(all(0 <= level <= 6112 for light in levels for level in light), "levels are in range")
+    return levels
 
 
 class Picture:
@@ -264,7 +302,7 @@ def message(kind, fields=b""):
     return head + struct.pack("<I", zlib.crc32(head + fields)) + fields
 
 
-def hello(version=26, more=b""):
+def hello(version=27, more=b""):
     return message(HELLO, b"PRAY" + struct.pack("<HHIQH", version, 8192, 1 << 21, 1 << 30, 256) + more)
 
 
@@ -278,13 +316,14 @@ def pack_camera(camera):
 
 DEFAULTS = dict(frame=1, time=0.0, stated=0, index=0, camera=CAMERA, width=48, height=36, samples=1, depth=8, points=4, area_shadows=0, area_irradiance=1,
                 cut_off=0.5, filter=0, normals=0, indirect=0, reconstruction=2, virtual_lights=64, compensation=0, selective=0.0, resolution=0, light_tolerance=0.0625, environment_shadows=32, on=0, off=0, exposure=0.0, dither=0, format=RGB888, first=0, end=None,
-                largest=16, coding=1, coarse=0, order=(), measure=0)
+                largest=16, coding=1, coarse=0, pitch=0, order=(), measure=0)
 
 
 def request(scene, kind=FRAME_REQUEST, **changes):
     r = dict(DEFAULTS, **changes)
     end = r["height"] if r["end"] is None else r["end"]
-    rows = struct.pack("<BHH", r["coarse"], r["first"], end) + bytes(x for run in r["order"] for x in run)
+    pitch = struct.pack("<B", r["pitch"]) if kind == FRAME_REQUEST else b""
+    rows = struct.pack("<B", r["coarse"]) + pitch + struct.pack("<HH", r["first"], end) + bytes(x for run in r["order"] for x in run)
     settings = struct.pack("<HHBBHBBfBBBBHBfBfHQQ", r["width"], r["height"], r["samples"], r["depth"], r["points"], r["area_shadows"], r["area_irradiance"], r["cut_off"],
                            r["filter"], r["normals"], r["indirect"],
                            r["reconstruction"], r["virtual_lights"], r["compensation"], r["selective"], r["resolution"], r["light_tolerance"],
@@ -311,7 +350,7 @@ class Device:
         if greets:
             self.send(hello())
             kind, fields = self.receive()
-            check(kind == HELLO and fields[:6] == b"PRAY\32\0", "the server says hello first, of version 26")
+            check(kind == HELLO and fields[:6] == b"PRAY\33\0", "the server says hello first, of version 27")
             self.side, self.message_bytes, self.scene_bytes, self.price = struct.unpack("<HIQH", fields[6:])
             check(self.price >= 256, "the hello's price")
 
@@ -400,6 +439,16 @@ class Device:
         due[0] = first, row
         if row == first:
             del due[0]
+
+    def light(self, scene, kind=FRAME_REQUEST, pitch=8, **changes):
+        """Requests a light map; returns its lights, as levels."""
+        r = dict(DEFAULTS, **changes)
+        self.send(request(scene, kind, pitch=pitch, **changes))
+        kind, fields = self.receive()
+        check(kind == LIGHT_MAP, "a light map comes, not %s" % kind)
+        number, _, price = struct.unpack_from("<HHH", fields)
+        check(number == r["frame"] & 0xFFFF and price >= 256, "the map's frame and price")
+        return decode_light(fields[6:], -(-r["width"] // pitch), -(-r["height"] // pitch))
 
     def frame(self, scene, kind=FRAME_REQUEST, **changes):
         """Requests rows and receives them."""

@@ -11,7 +11,7 @@
 
 namespace pocketray {
 
-constexpr int kMessageTypeCount = static_cast<int>(MessageType::coarse_picture);
+constexpr int kMessageTypeCount = static_cast<int>(MessageType::light_map);
 
 // The message's array points to `tail`, which must outlive it.
 inline Message sample_message(MessageType type, Rng* rng, const std::vector<std::uint8_t>& tail) {
@@ -80,7 +80,9 @@ inline Message sample_message(MessageType type, Rng* rng, const std::vector<std:
   v->effects = wide() & kAllEffects, v->triangle_count = next_u32(rng);
   v->bounds = {{-next_float(rng), -1, 0}, {next_float(rng), real() + 100, 1}};
   m.coarse_picture.frame = next_u32(rng), m.coarse_picture.pixels = bytes;
-  m.hello.price = price(), m.row_chunk.price = price(), m.pong.price = price();
+  if (next_u32(rng) % 2) f->light_pitch = static_cast<std::uint8_t>(kLightPitchLow + next_u32(rng) % 15);
+  m.light_map.frame = next_u32(rng), m.light_map.light_ps = next_u32(rng), m.light_map.bytes = bytes;
+  m.hello.price = price(), m.row_chunk.price = price(), m.pong.price = price(), m.light_map.price = price();
   return m;
 }
 

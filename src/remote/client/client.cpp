@@ -24,9 +24,9 @@ CodecShape codec_shape(const Settings& settings, WireFormat format) {
   return {settings.width, settings.height, std::min(kChunkRowsMax, settings.height), format};
 }
 
-std::size_t in_bytes(const CodecShape& shape) {
+std::size_t in_bytes(const CodecShape& shape, const Settings& settings, const LightOptions& light) {
   std::size_t chunk = row_chunk_prefix_bytes(true, true) + encoded_bytes_max(shape, shape.chunk_rows_max);
-  return std::max(chunk, kInBytesMin);
+  return std::max({chunk, kInBytesMin, light_message_bytes_max(settings, light)});
 }
 
 // True if the device polls often in this frame to see when rows arrive: in the first frames with a server and a few
@@ -136,12 +136,13 @@ std::uint64_t client_now_ns(const Client& client) {
   return platform::link_clock_ns(&client.clock, client.link->backend->now_ns(client.link));
 }
 
-std::size_t client_need(const Settings& settings, WireFormat format, std::uint32_t server_count) {
+std::size_t client_need(const Settings& settings, WireFormat format, std::uint32_t server_count,
+                        const LightOptions& light) {
   CodecShape shape = codec_shape(settings, format);
-  std::size_t each = message_stream_need(in_bytes(shape), kOutBytes) + row_decoder_need(shape);
+  std::size_t each = message_stream_need(in_bytes(shape, settings, light), kOutBytes) + row_decoder_need(shape);
   return server_count * each + cost_model_need(settings.height, server_count) +
          split_need(settings.height, server_count) + merge_need(settings.height) + verifier_need(settings) +
-         arena_need(std::size_t(settings.width) * settings.height * pixel_bytes(format));
+         light_need(settings, light) + arena_need(std::size_t(settings.width) * settings.height * pixel_bytes(format));
 }
 
 Status make_client(const ClientOptions& options, const Settings& settings, const ContentHash& scene,
@@ -166,6 +167,7 @@ Status make_client(const ClientOptions& options, const Settings& settings, const
       arena, std::size_t(settings.width) * settings.height * pixel_bytes(options.format));
   client->merge = make_merge(settings.height, arena);
   RETURN_IF_ERROR(make_verifier(options.check_count, options.entropy, settings, arena, &client->verifier));
+  make_light(options.light, settings, arena, &client->light);
   client->model = make_cost_model(settings.width, settings.height, server_count, arena);
   client->workspace = make_split_workspace(settings.height, server_count, arena);
   client->model.cost_per_device_pixel = options.cost_per_device_pixel;
@@ -175,13 +177,13 @@ Status make_client(const ClientOptions& options, const Settings& settings, const
   for (std::uint32_t i = 0; i < server_count; ++i) {
     RemoteServer* server = &client->servers[i];
     server->address = servers[i];
-    server->messages = make_message_stream(in_bytes(shape), kOutBytes, arena);
+    server->messages = make_message_stream(in_bytes(shape, settings, options.light), kOutBytes, arena);
     server->timer = platform::link_timer(client_now_ns(*client), 0);
     client->model.servers[i].cost_per_megabyte = options.cost_per_megabyte;
     client->model.servers[i].chunk_rows = kChunkRowsMin;
     make_row_decoder(shape, arena, &server->decoder);
   }
-  CHECK_LE(arena->used - used, client_need(settings, options.format, server_count));
+  CHECK_LE(arena->used - used, client_need(settings, options.format, server_count, options.light));
   return success();
 }
 
@@ -279,7 +281,7 @@ void begin_client_frame(Client* client, const Renderer& renderer, const FrameSta
   CHECK(!unchanged || client->complete);
   if (!client->complete) {
     cancel_rest(client, true);
-    end_frame(&client->model);
+    if (!client->light.by_effect) end_frame(&client->model);
   }
   CHECK_EQ(renderer.settings.width, client->settings.width);
   CHECK_EQ(renderer.settings.height, client->settings.height);
@@ -305,6 +307,7 @@ void begin_client_frame(Client* client, const Renderer& renderer, const FrameSta
   q->camera = renderer.camera;
   q->camera.node = kNone;
   q->settings = renderer.settings;
+  if (client->light.by_effect) q->settings.indirect = client->options.light.indirect;
   if (q->settings.resolution == Resolution::interleaved)
     q->settings.resolution = Resolution::checkerboard;  // what the device traces of it, too: no server has the last one
   q->exposure = renderer.exposure;
@@ -324,7 +327,8 @@ void begin_client_frame(Client* client, const Renderer& renderer, const FrameSta
     any = any || server->phase == ServerPhase::ready;
   }
   client->held = !unchanged && any && wants_quiet(*client);
-  if (any && client->options.has_scene && !client->held && !unchanged) share_rows(client);
+  begin_light_frame(client);
+  if (any && client->options.has_scene && !client->held && !unchanged && !client->light.by_effect) share_rows(client);
   advance_client(client, 0);
 }
 
@@ -359,7 +363,7 @@ void finish_device_rows(Client* client, std::uint32_t row_begin, std::uint32_t r
   CHECK_LT(row_begin, row_end);
   const double count = row_end - row_begin, pixels = static_cast<double>(pixel_count);
   CHECK_LE(pixel_count, std::uint64_t(row_end - row_begin) * client->settings.width);
-  for (std::uint32_t row = row_begin; row < row_end; ++row)
+  for (std::uint32_t row = row_begin; row < row_end && !client->light.by_effect; ++row)
     observe_device_row(&client->model, row, static_cast<double>(ns) / count, pixels / (count * client->settings.width));
   client->device_ns += static_cast<double>(ns), client->device_pixels += pixel_count;
   finish_rows(&client->merge, row_begin, row_end);
@@ -393,7 +397,8 @@ void end_client_frame(Client* client) {
   if (!client->options.has_scene) learn_row_times(client);
   if (client->joined) ++client->frames_with_servers;
   cancel_rest(client, false);
-  if (!client->unchanged) end_frame(&client->model);
+  if (!client->unchanged && !client->light.by_effect) end_frame(&client->model);
+  end_light_frame(client);
 }
 
 bool is_settled(const Client& client) {

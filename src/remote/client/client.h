@@ -6,6 +6,7 @@
 #pragma once
 #include "engine/pace.h"
 #include "engine/renderer.h"
+#include "remote/client/light.h"
 #include "remote/client/verify.h"
 #include "remote/stream.h"
 #include "split/cost_model.h"
@@ -32,6 +33,7 @@ struct ClientOptions {
   bool device_goes_on = true;                           // goes on into missing rows; false: for comparisons
   Pace pace;                                            // the CPU to emulate
   CodeCost decode;                                      // and what decoding takes there; 0: as here
+  LightOptions light;                                   // of frames shared by effect
   const float* row_costs = nullptr;                     // relative row costs on it; see row_costs.h
   bool has_scene = true;                                // false: the device only shows what servers render
   int check_count = kCheckCountAuto;  // servers' pixels to check per frame, at most kSpotChecksMax; 0: none
@@ -105,7 +107,8 @@ struct RemoteServer {
   std::uint32_t due_rows = 0;        // and their number
   std::uint64_t late_rows = 0;       // rows of earlier requests that may be in flight;
   std::uint64_t late_at_ping = 0;    // their number when the ping was sent
-  std::uint32_t coarse_due = 0;      // coarse pictures that may still come
+  std::uint32_t coarse_due = 0;      // coarse pictures that may still come,
+  std::uint32_t light_due = 0;       // and light maps
   bool more = false;                 // unread input remains: one poll handles at most a frame's worth
   bool unanswered = false;           // no answer since rows were requested; new requests do not extend the time
   std::uint32_t chunk_count = 0;     // received on this connection
@@ -134,6 +137,10 @@ struct FrameShare {
   std::uint32_t kept_rows = 0;                  // received, of chunks of which the server traced nothing,
   std::uint64_t kept_bytes = 0;                 // and all bytes of these chunks
   std::uint64_t bytes_in = 0, bytes_out = 0;    // on the wire, all connections
+  bool by_effect = false;                       // the device rendered all rows, and a server the indirect light
+  bool has_light = false;                       // which they have,
+  std::uint32_t light_age = 0;                  // of so many frames before,
+  std::uint64_t light_bytes = 0;                // of maps that came during the frame
 };
 
 // Arrival of a frame's rows, from the first chunk, whose start is unknown, to the last.
@@ -194,7 +201,8 @@ struct Client {
   std::uint64_t frames_with_servers = 0;         // since a server came into use
   LinkTrial link_trial;
   std::uint64_t bytes_in_before = 0, bytes_out_before = 0;
-  FrameShare share;               // of the last complete frame
+  FrameShare share;  // of the last complete frame
+  ClientLight light;
   std::uint64_t progress_ns = 0;  // when missing rows last came
 };
 
@@ -204,7 +212,8 @@ RowCoding row_coding(double ns_per_byte, double threshold, bool near_lossless);
 double code_threshold(const Client& client, const RemoteServer& server);
 
 // Arena bytes for pictures of that size. The client uses server_count streams of the link.
-std::size_t client_need(const Settings& settings, WireFormat format, std::uint32_t server_count);
+std::size_t client_need(const Settings& settings, WireFormat format, std::uint32_t server_count,
+                        const LightOptions& light = LightOptions());
 // Addresses must be resolved; does not connect yet. The client must not be moved.
 Status make_client(const ClientOptions& options, const Settings& settings, const ContentHash& scene,
                    platform::Link* link, const platform::LinkAddress* servers, std::uint32_t server_count, Arena* arena,

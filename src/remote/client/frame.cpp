@@ -17,14 +17,6 @@ constexpr std::uint64_t kWaitNs = 500'000;  // between polls while waiting for r
 constexpr std::uint32_t kFirstPixels = 8;   // first part of a row while the cost of pixels is unknown; 0.7 ms of
                                             // `cornell` on an ARM926 (progressive.cpp)
 
-void pack_device_rows(const Renderer& renderer, Client* client, std::uint32_t row_begin, std::uint32_t row_end) {
-  int width = static_cast<int>(renderer.settings.width), height = static_cast<int>(renderer.settings.height);
-  bool small = client->options.format == WireFormat::rgb565;
-  pack_rows(renderer.image.data, width, height, static_cast<int>(row_begin), static_cast<int>(row_end),
-            renderer.exposure, small ? kRgb565 : kRgb888, Rotation::none, client->options.dither, client->pixels.data,
-            width * static_cast<int>(pixel_bytes(client->options.format)));
-}
-
 // Takes as long as the emulated device takes for `pixel_count` pixels; returns that time.
 std::uint64_t take_time_at(Client* client, const Pace& pace, std::uint64_t pixel_count, std::uint64_t begin_ns) {
   std::uint64_t elapsed = client_now_ns(*client) - begin_ns;
@@ -142,7 +134,8 @@ bool merge_rows(void* context, const SpanBatch& batch) {
   const ClientRows& s = *static_cast<ClientRows*>(context);
   Client* client = s.client;
   bool busy = batch.span_count > 0;
-  if ((!busy || finish_batch(s, batch)) && has_all_rows(*client) && is_verified(s.renderer, client)) {
+  if ((!busy || finish_batch(s, batch)) && has_all_rows(*client) && is_lit(s.renderer, client) &&
+      is_verified(s.renderer, client)) {
     if (client->options.has_scene) {
       end_shared_rows(s.renderer);
       const Coherence& c = s.renderer->coherence;
@@ -163,7 +156,13 @@ Status prepare_rows(Renderer* renderer, Client* client, FrameStart* start) {
   end_shared_rows(renderer);  // of a frame that was given up
   RETURN_IF_ERROR(prepare_frame(renderer, start->seconds));
   const std::uint64_t posed_ns = renderer->pace.clock->now_ns();
-  begin_shared_rows(renderer, 0, renderer->settings.height);
+  if (client->light.by_effect) {
+    // Light can change where nothing else does: all is traced.
+    forget_frame(&renderer->coherence);
+    renderer->frame.first_hits = client->light.first_hits.data;
+  } else {
+    begin_shared_rows(renderer, 0, renderer->settings.height);
+  }
   start->unchanged = client->complete && client->kept_count > 0 &&
                      client->kept_count == renderer->coherence.kept_count && is_shared_frame_unchanged(*renderer) &&
                      renderer->exposure == client->request.exposure;
@@ -197,6 +196,14 @@ bool asks_first(const Renderer& renderer, const Client& client, double seconds) 
 
 }  // namespace
 
+void pack_device_rows(const Renderer& renderer, Client* client, std::uint32_t row_begin, std::uint32_t row_end) {
+  int width = static_cast<int>(renderer.settings.width), height = static_cast<int>(renderer.settings.height);
+  bool small = client->options.format == WireFormat::rgb565;
+  pack_rows(renderer.image.data, width, height, static_cast<int>(row_begin), static_cast<int>(row_end),
+            renderer.exposure, small ? kRgb565 : kRgb888, Rotation::none, client->options.dither, client->pixels.data,
+            width * static_cast<int>(pixel_bytes(client->options.format)));
+}
+
 void prepare_device(Renderer* renderer, Client* client) {
   FrameStart start;
   start.seconds = client->request.seconds;
@@ -212,6 +219,7 @@ Status begin_frame(Renderer* renderer, Client* client, double seconds) {
   RETURN_IF_ERROR(check_limit(Quantity::seconds, seconds));
   FrameStart start;
   start.seconds = seconds, start.begin_ns = client_now_ns(*client);
+  RETURN_IF_ERROR(choose_split(renderer, client));
   if (client->options.has_scene && !asks_first(*renderer, *client, seconds))
     RETURN_IF_ERROR(prepare_rows(renderer, client, &start));
   begin_client_frame(client, *renderer, start);

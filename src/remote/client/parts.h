@@ -96,6 +96,8 @@ bool is_witnessed(Client* client);
 
 // Prepares the device for the frame under way.
 void prepare_device(Renderer* renderer, Client* client);
+// Packs rows of the device's picture into the merged one.
+void pack_device_rows(const Renderer& renderer, Client* client, std::uint32_t row_begin, std::uint32_t row_end);
 // Takes as long as the emulated device takes for `pixel_count` pixels; returns that time.
 std::uint64_t take_time(Client* client, std::uint64_t pixel_count, std::uint64_t begin_ns);
 
@@ -129,6 +131,19 @@ void want_coarse(Client* client, double frame_ns);
 bool awaits_coarse(const Client& client);
 // Puts it where rows are missing.
 void show_coarse(Client* client, const CoarsePicture& coarse);
+
+// ---- light.cpp
+
+// Call when a frame begins, after choose_split(), and when it ends.
+void begin_light_frame(Client* client);
+void end_light_frame(Client* client);
+// Asks a server for the light of the frame under way if it is shared by effect, wants a map and has asked for none.
+void ask_for_light(Client* client);
+void take_light(Client* client, RemoteServer* server, LightMapMessage message);
+// The server will not send the light that it was asked for, or too late.
+void forget_light_of(Client* client, std::uint32_t server);
+// Adds light to a frame that has all its rows. True: it has what it gets; false: some is due, or to be added.
+bool is_lit(Renderer* renderer, Client* client);
 
 // ---- client.cpp
 

@@ -41,7 +41,7 @@ void connect_server(Client* client, RemoteServer* server) {
 void greet_server(Client* client, RemoteServer* server) {
   CHECK(server->phase == ServerPhase::connecting);
   restart_row_decoder(server->decoder);
-  server->coarse_due = 0;
+  server->coarse_due = server->light_due = 0;
   server->pings_answered = server->pings_missed = 0, server->ping_id = 0, server->round_trip_ns = 0;
   server->chunk_count = 0, server->unanswered = false;
   server->quiet_until_ns = server->anew_ns = 0;
@@ -90,6 +90,7 @@ bool takes_owed_rows(RemoteServer* server, const RowChunk& chunk) {
     server->due_rows -= chunk.row_count;
     server->late_rows = server->late_at_ping = 0;
     server->coarse_due = 0;  // it would have come before
+    server->light_due = 0;
     return true;
   }
   if (chunk.row_count > server->late_rows) return false;
@@ -151,6 +152,8 @@ void take(Client* client, RemoteServer* server, const Message& message) {
     return take_chunk(client, server, message.row_chunk);
   if (message.type == MessageType::coarse_picture && server->phase >= ServerPhase::probing)
     return take_coarse(client, server, message.coarse_picture);
+  if (message.type == MessageType::light_map && server->phase >= ServerPhase::probing)
+    return take_light(client, server, message.light_map);
   if (message.type == MessageType::error) return lose_server(client, server, wire_error_text(message.error.code));
   lose_server(client, server, kUnasked);
 }
@@ -158,7 +161,7 @@ void take(Client* client, RemoteServer* server, const Message& message) {
 // True if an answer or rows are due.
 bool is_awaited(const Client& client, const RemoteServer& server) {
   if (server.phase == ServerPhase::ready || server.phase == ServerPhase::probing)
-    return server.frame.open || server.ping_id != 0 || server.unanswered;
+    return server.frame.open || server.light_due > 0 || server.ping_id != 0 || server.unanswered;
   (void)client;
   return server.phase != ServerPhase::waiting;
 }
@@ -251,6 +254,7 @@ void lose_server(Client* client, RemoteServer* server, const char* reason) {
   std::uint32_t i = index_of(*client, server);
   client->model.servers[i].connected = false;
   server->frame.open = false;
+  forget_light_of(client, i);
   server->phase = ServerPhase::waiting;
   std::uint64_t now = client_now_ns(*client);
   if (server->useful_ns > 0 && now - server->useful_ns >= kLastingWaits * server->retry_ns) server->retry_ns = 0;

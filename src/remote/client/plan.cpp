@@ -140,6 +140,7 @@ void request_rows(Client* client, RemoteServer* server, std::uint32_t row_begin,
   bool like_the_last = server->asked.frame > 0 && is_change(message.frame_request, server->asked);
   message.type = like_the_last ? MessageType::frame_change : MessageType::frame_request;
   server->late_rows += server->due_rows;
+  forget_light_of(client, index);
   if (message.frame_request.coarse_first) ++server->coarse_due, client->coarse_asked = true;
   client->request.coarse_first = false;
   server->asked = message.frame_request;
@@ -210,6 +211,7 @@ void share_rows(Client* client) {
 void let_join(Client* client) {
   if (!client->options.has_scene) return ask_idle_servers(client);
   if (client->complete || client->unchanged) return;
+  if (client->light.by_effect) return ask_for_light(client);
   bool any = false;
   for (std::uint32_t i = 0; i < client->server_count; ++i) {
     if (client->servers[i].phase == ServerPhase::probing) finish_probe(client, &client->servers[i]);

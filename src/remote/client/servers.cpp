@@ -20,6 +20,8 @@ namespace {
 constexpr platform::LinkBackend const& kNet = platform::kTcpLink;
 // Chosen: the longest after which a picture still seems to follow the buttons at once.
 constexpr double kLongFrameNs = 100e6;
+// Chosen: pictures in files are worth waiting for, but not for a server that never sends their light.
+constexpr std::uint64_t kLightWaitNs = 60'000'000'000;
 
 platform::LinkOptions link_options(int stream_count_max, std::size_t byte_count,
                                    std::vector<std::max_align_t>* memory) {
@@ -80,6 +82,12 @@ Status check(const ServersOptions& o) {
     return failure("--verify checks pixels of render servers: add --server");
   if (o.addresses.empty() && o.near_lossless)
     return failure("--near-lossless applies to pixels of render servers: add --server");
+  if (o.split == "rows" && (o.light_pitch != 0 || o.light_every != 1))
+    return failure("--light-pitch and --light-every apply to --split effect and auto");
+  if (o.split != "rows" && o.addresses.empty())
+    return failure("--split shares frames with render servers: add --server");
+  if (o.split != "rows" && o.device_share != kBestShare)
+    return failure("--share divides rows: drop it, or --split %s", o.split.c_str());
   bool any = o.price > 0 || o.energy_pixel > 0 || o.energy_byte > 0 || o.cost_weight_ms > 0 || o.cost_cap > 0;
   if (o.addresses.empty() && (any || o.device_share != kBestShare))
     return failure("shares, prices and energies apply to render servers: add --server");
@@ -93,6 +101,17 @@ SplitWish wish_of(const ServersOptions& o) {
   if (o.cost_weight_ms > 0) wish.goal = SplitGoal::time_and_cost, wish.ns_per_cost = o.cost_weight_ms * 1e6;
   if (o.cost_cap > 0) wish.goal = SplitGoal::time_under_cap, wish.cap = o.cost_cap;
   return wish;
+}
+
+LightOptions light_options(const ConnectedServers& s) {
+  LightOptions light;
+  const ServersOptions& o = s.options;
+  if (!s.is_thin)
+    light.split = o.split == "effect" ? SplitKind::effect : o.split == "auto" ? SplitKind::automatic : SplitKind::rows;
+  if (o.light_pitch != 0) light.pitch = o.light_pitch;
+  light.every = o.light_every;
+  if (!o.coarse_first) light.wait_ns = kLightWaitNs;
+  return light;
 }
 
 Status open_servers(const ServersOptions& options, const platform::Device* emulated, Servers** servers) {
@@ -125,7 +144,8 @@ void close_servers(Servers* servers) {
 }
 
 std::size_t servers_need(const Servers& servers, const Settings& settings) {
-  return client_need(settings, WireFormat::rgb888, static_cast<std::uint32_t>(connected(servers).addresses.size()));
+  const ConnectedServers& s = connected(servers);
+  return client_need(settings, WireFormat::rgb888, static_cast<std::uint32_t>(s.addresses.size()), light_options(s));
 }
 
 Status start_client(Servers* servers, Renderer* renderer, bool small_pixels, bool dither) {
@@ -145,6 +165,10 @@ Status start_client(Servers* servers, Renderer* renderer, bool small_pixels, boo
   options.check_count = s->options.verify;
   options.near_lossless = s->options.near_lossless;
   if (s->options.coarse_first) options.coarse_after_ns = kLongFrameNs;
+  options.light = light_options(*s);
+  options.light.indirect = renderer->settings.indirect;
+  if (s->is_thin && s->options.split != "rows")
+    print_line(nullptr, "frames are shared by rows, not by effect: the scene does not fit on this device");
   options.entropy = platform::random_bytes;
   options.log = print_line;
   s->totals = ServersTotals();
@@ -179,6 +203,7 @@ bool advance_frame(Servers* servers, Renderer* renderer, std::uint64_t slice_ns,
   t->bytes_in += share.bytes_in, t->bytes_out += share.bytes_out;
   for (std::uint32_t checked : share.checked) t->checked += checked;
   t->lies += share.lies;
+  t->effect_frames += share.by_effect, t->lit_frames += share.has_light, t->light_bytes += share.light_bytes;
   if (share.local_ns > 0) t->local_ns += share.local_ns, t->known_ns += share.measured_ns;
   return true;
 }
@@ -234,7 +259,9 @@ void add_server_lines(const ConnectedServers& s, HudText* text) {
   const FrameShare& f = s.last;
   for (std::uint32_t i = 0; i < client.server_count; ++i) {
     const RemoteServer& server = client.servers[i];
-    if (server.phase == ServerPhase::ready && f.row_end[i] > 0)
+    if (f.by_effect && server.phase == ServerPhase::ready)
+      add_hud_line(text, "%s light  %.1f kB", server.address.text, static_cast<double>(f.server_bytes[i]) * 1e-3);
+    else if (server.phase == ServerPhase::ready && f.row_end[i] > 0)
       add_hud_line(text, "%s rows %u-%u, gave %u  %.1f kB", server.address.text, f.row_begin[i], f.row_end[i] - 1,
                    f.server_rows[i], static_cast<double>(f.server_bytes[i]) * 1e-3);
     else
@@ -252,6 +279,9 @@ void add_share_lines(const ConnectedServers& s, HudText* text) {
                    f.local_ns * 1e-6, f.local_ns / f.measured_ns);
     else if (s.is_thin)
       add_hud_line(text, "%.1f ms  all by servers", f.measured_ns * 1e-6);
+    else if (f.by_effect)
+      add_hud_line(text, f.has_light ? "%.1f ms  shared by effect, light of %u frames before" : "%.1f ms  no light yet",
+                   f.measured_ns * 1e-6, f.light_age);
     else
       add_hud_line(text, "%.1f ms  device alone so far", f.measured_ns * 1e-6);
     const char* device = client.options.pace.device ? client.options.pace.device : "device";
@@ -282,6 +312,11 @@ ServersTotals totals_of(const Servers& servers) {
   const ConnectedServers& s = connected(servers);
   ServersTotals totals = s.totals;
   totals.checks_rows = s.is_thin;
+  const EffectChoice& c = s.client.light.choice;
+  auto value = [](const Smoothed& smoothed) { return static_cast<double>(smoothed.value); };
+  totals.effect_ns = predict_effect_ns(c), totals.rows_ns = value(c.rows_ns);
+  totals.effect_times = {value(c.prepare_ns), value(c.device_ns), value(c.server_ns), value(c.transfer_ns),
+                         value(c.add_ns)};
   totals.caught_row = 1;
   for (const RemoteServer& server : s.client.servers)
     if (server.checks.rows > 0 && !server.lied)

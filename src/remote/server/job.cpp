@@ -75,7 +75,7 @@ Status plan_chunks(Session* session) {
 Status build(Session* session, const JobTools& tools, WireError* code) {
   CHECK_GE(tools.thread_count, 1u);
   session->built_scene = nullptr;
-  session->trace_ns = session->probe_ns = 0;
+  session->trace_ns = session->probe_ns = session->light_ns = 0;
   Renderer* renderer = &session->renderer;
   *renderer = Renderer();
   Settings settings = session->job.request.settings;
@@ -104,6 +104,7 @@ Status build(Session* session, const JobTools& tools, WireError* code) {
 Status plan(Session* session, const JobTools& tools, WireError* code) {
   *code = WireError::too_large;
   if (!session->job.is_view_query) RETURN_IF_ERROR(plan_chunks(session));
+  if (session->job.request.light_pitch > 0) RETURN_IF_ERROR(check_light_map(*session));
   bool built = is_built_for(*session);
   if (built) end_shared_rows(&session->renderer);  // while it has the last frame's geometry
   if (!built) RETURN_IF_ERROR(build(session, tools, code));
@@ -135,6 +136,10 @@ Status aim(Session* session) {
   }
   renderer->exposure = job->request.exposure > 0 ? job->request.exposure : session->own_exposure;
   RETURN_IF_ERROR(prepare_frame(renderer, job->request.seconds));
+  if (job->request.light_pitch > 0) {
+    job->stage = JobStage::light;
+    return success();
+  }
   begin_shared_rows(renderer, job->request.row_begin, job->request.row_end);
   job->stage = JobStage::search;
   return success();
@@ -172,7 +177,8 @@ Status step_job(Session* session, const JobTools& tools, std::uint64_t slice_ns,
     case JobStage::plan:
       return plan(session, tools, code);
     case JobStage::aim:
-      if (tools.helpers && !session->job.is_view_query) tools.helpers->begin(tools.helpers->context, session);
+      if (tools.helpers && !session->job.is_view_query && session->job.request.light_pitch == 0)
+        tools.helpers->begin(tools.helpers->context, session);
       slice->is_preparation = !session->job.is_view_query;
       return aim(session);
     case JobStage::own_exposure:
@@ -184,6 +190,9 @@ Status step_job(Session* session, const JobTools& tools, std::uint64_t slice_ns,
       break;
     case JobStage::coarse:
       *slice = trace_coarse(session, slice_ns);
+      break;
+    case JobStage::light:
+      *slice = trace_light(session, slice_ns);
       break;
     case JobStage::rows:
       CHECK(session->encoder != nullptr && session->built_scene == session->job.scene);

@@ -152,6 +152,7 @@ bool take_message(Server* server, Session* session, const Message& message) {
     case MessageType::scene_piece:
     case MessageType::row_chunk:
     case MessageType::coarse_picture:
+    case MessageType::light_map:
     case MessageType::pong:
     case MessageType::view_entry:
       break;

@@ -14,12 +14,6 @@ constexpr std::uint32_t kFirstPixels = 8;  // per thread, while the cost of pixe
 // Per light point and sample; measured: 512 points, 16 samples, 0.65 ms per pixel of cornell.
 constexpr double kLightPointNs = 80;
 
-std::uint32_t picoseconds(std::uint64_t ns, std::uint64_t pixel_count) {
-  CHECK_GT(pixel_count, 0u);
-  double ps = static_cast<double>(ns) * 1000 / static_cast<double>(pixel_count);
-  return ps < 4294967295.0 ? static_cast<std::uint32_t>(ps) : ~0u;
-}
-
 void send_chunk(Session* session, std::uint32_t row_begin, std::uint32_t row_end) {
   CHECK_LT(row_begin, row_end);
   CHECK_LE(row_end - row_begin, session->shape.chunk_rows_max);
@@ -137,6 +131,12 @@ void next_slice(void* context, SpanBatch* batch) {
 
 }  // namespace
 
+std::uint32_t picoseconds(std::uint64_t ns, std::uint64_t pixel_count) {
+  CHECK_GT(pixel_count, 0u);
+  double ps = static_cast<double>(ns) * 1000 / static_cast<double>(pixel_count);
+  return ps < 4294967295.0 ? static_cast<std::uint32_t>(ps) : ~0u;
+}
+
 void make_session(void* memory, std::size_t byte_count, Session* session) {
   CHECK(memory != nullptr && session != nullptr);
   CHECK_GE(byte_count, kSessionBytesMin);
@@ -187,14 +187,16 @@ void drop_job(Session* session) {
 bool has_chunk(const Session& session) {
   return has_job(session) && session.job.stage == JobStage::rows && queued_bytes(session.messages) <= kAheadBytes &&
          !session.job.codes_beside &&
-         (session.job.has_coarse || session.job.rows_traced - session.job.rows_sent >= next_chunk_rows(session));
+         (session.job.has_coarse || session.job.has_light ||
+          session.job.rows_traced - session.job.rows_sent >= next_chunk_rows(session));
 }
 
 bool can_work(const Session& session) {
   if (!has_job(session) || queued_bytes(session.messages) > kAheadBytes) return false;
   std::uint32_t unsent = session.job.rows_traced - session.job.rows_sent;
   if (session.job.stage != JobStage::rows) return true;
-  return has_rows(session.job.traced) && (session.job.codes_beside || unsent < next_chunk_rows(session));
+  return !session.job.has_light && has_rows(session.job.traced) &&
+         (session.job.codes_beside || unsent < next_chunk_rows(session));
 }
 
 void pack_session_rows(Session* session, std::uint32_t row_begin, std::uint32_t row_end) {
@@ -247,6 +249,7 @@ void end_slice(Session* session, const Slice& slice, std::uint64_t took_ns) {
     if (session->trace_ns == 0) session->trace_ns = static_cast<double>(took_ns + 1) / slice.traced_count;
     return;
   }
+  if (slice.is_light) return end_light_slice(session, slice, took_ns);
   RowRange ranges[kRunCountMax];
   const std::uint32_t range_count = next_ranges(*job, slice.row_count, ranges);
   for (std::uint32_t i = 0; i < range_count; ++i) {
@@ -269,6 +272,7 @@ void send_chunks(Session* session) {
       send_coarse(session);
       continue;
     }
+    if (job->has_light) return send_light(session);
     std::uint32_t rows = next_chunk_rows(*session);
     send_chunk(session, job->sent.row_end - rows, job->sent.row_end);
     job->rows_sent += rows;

@@ -43,6 +43,7 @@ enum class JobStage : std::uint8_t {
   view_exposure,  // of a view_query, answered afterwards
   coarse,         // the coarse picture, if one is wanted
   rows,
+  light,  // a map of indirect light instead of rows
 };
 
 // The frame that a client waits for. Its rows are traced and sent in the request's order; of the next row to trace, the
@@ -58,10 +59,11 @@ struct FrameJob {
   std::uint32_t traced_columns;
   std::uint32_t coarse_row, coarse_column, coarse_rows;  // on the grid of the coarse picture: next pixel, rows at once
   bool has_coarse;                                       // it is traced and waits to be sent
-  bool codes_beside;                                     // its finished chunk is coded beside the next slice
-  std::uint64_t work_ns, pixel_count;                    // of rows traced but not completely sent
-  std::uint64_t took_ns;                                 // CPU time so far,
-  std::uint64_t prepare_ns;                              // of this before the first pixel
+  bool has_light;                      // the same of a light map, on whose grid the fields above count
+  bool codes_beside;                   // its finished chunk is coded beside the next slice
+  std::uint64_t work_ns, pixel_count;  // of rows traced but not completely sent
+  std::uint64_t took_ns;               // CPU time so far,
+  std::uint64_t prepare_ns;            // of this before the first pixel
   // Of each row of the picture, the pixels traced, if several ranks share the job: its complete rows are then packed.
   // Null: this program alone renders.
   const std::uint32_t* row_pixels;
@@ -72,6 +74,7 @@ struct Slice {
   std::uint32_t row_count, column_end, pixel_count;  // column_end: the job's next traced_columns
   std::uint32_t traced_count;                        // of the pixels; the others are the last frame's
   bool is_probe, is_coarse;
+  bool is_light;        // pixels are lights of a light map
   bool is_preparation;  // of a frame before its first pixel
 };
 
@@ -123,6 +126,7 @@ struct Session {
   std::uint32_t frame_last = 0;                    // number of the last request
   std::uint64_t coded_pixels = 0, code_bytes = 0;  // since the server last took them
   double trace_ns = 0, probe_ns = 0;   // thread time of an expensive pixel, and of an exposure pixel; 0: unknown
+  double light_ns = 0;                 // of an expensive light of a light map; 0: unknown
   double code_pixel_ns = 0;            // to code a pixel, as last measured
   std::uint32_t pixel_ps = 0;          // recent work on a pixel
   std::uint16_t price = kPriceUnit;    // for the client, as of the last choice
@@ -177,6 +181,14 @@ void send_coarse(Session* session);
 inline PixelFormat pack_format(WireFormat format) { return format == WireFormat::rgb565 ? kRgb565 : kRgb888; }
 // The next rows to trace, at most kRunCountMax ranges; returns their number.
 std::uint32_t next_ranges(const FrameJob& job, std::uint32_t row_count, RowRange* ranges);
+// Whether a message can hold the light map that the job asks for.
+Status check_light_map(const Session& session);
+// Traces the next lights of it, for about `slice_ns`; accounts for them; sends the map, which ends the job.
+Slice trace_light(Session* session, std::uint64_t slice_ns);
+void end_light_slice(Session* session, const Slice& slice, std::uint64_t took_ns);
+void send_light(Session* session);
+// Picoseconds per pixel, as messages state them.
+std::uint32_t picoseconds(std::uint64_t ns, std::uint64_t pixel_count);
 // Traces the next pixels of the job, for about `slice_ns`, and codes the finished chunk beside them if it codes_beside.
 Slice trace_slice(Session* session, std::uint64_t slice_ns);
 // Packs rows of the image in the session's picture.

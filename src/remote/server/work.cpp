@@ -102,7 +102,8 @@ int choose_session(Server* server) {
 
 Pace pace_of(const Server& server, const Session& session, const Slice& slice) {
   const std::uint32_t row_count = std::max(slice.row_count, slice.pixel_count > 0 ? 1u : 0u);
-  if (!server.options.row_costs || row_count == 0 || slice.is_probe || slice.is_coarse) return server.options.pace;
+  if (!server.options.row_costs || row_count == 0 || slice.is_probe || slice.is_coarse || slice.is_light)
+    return server.options.pace;
   RowRange ranges[kRunCountMax];
   Pace pace = server.options.pace;
   pace.ns_per_pixel = 0;

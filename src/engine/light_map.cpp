@@ -1,0 +1,186 @@
+#include "engine/light_map.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/check.h"
+#include "shade/carried.h"
+#include "shade/contact.h"
+#include "shade/even_points.h"
+#include "shade/filters.h"
+#include "shade/indirect_light.h"
+#include "shade/pixel.h"
+
+namespace pocketray {
+namespace {
+
+// As of interleaved pixels (shade/interleaved.cpp): two show the same surface if it is the same triangle, or if the
+// second lies off the plane of the first by at most this slope and their normals differ by less than this cosine.
+constexpr float kSamePlane = 0.15f, kSameNormal = 0.7f;
+
+bool shows_same(const Surface& s, const MappedSurface& m) {
+  if (m.triangle == s.hit.triangle) return true;
+  if (!(dot(s.normal, m.normal) > kSameNormal)) return false;
+  const Vec3 way = m.point - s.point;
+  const float height = dot(s.normal, way);
+  return height * height <= kSamePlane * kSamePlane * dot(way, way);
+}
+
+// The mean of light from mapped pixels, by weight.
+struct Mean {
+  Vec3 sum = {0, 0, 0};
+  float weight = 0;
+
+  void add(const Vec3& light, float w) { sum += light * w, weight += w; }
+};
+
+// Mapped pixels [left, right] × [top, bottom] about a place, which is in units of the grid.
+struct Neighbourhood {
+  std::uint32_t left, right, top, bottom;
+};
+Neighbourhood around(const LightGrid& grid, const Vec2& place, std::uint32_t reach) {
+  const auto x = static_cast<std::uint32_t>(place.x), y = static_cast<std::uint32_t>(place.y);
+  return {x < reach ? 0 : x - reach, std::min(x + 1 + reach, grid.columns - 1), y < reach ? 0 : y - reach,
+          std::min(y + 1 + reach, grid.rows - 1)};
+}
+
+// Adds those that show the surface, or all that show any; `weigh` takes a distance along one axis.
+template <class Weigh>
+void gather(const LightMap& map, const Surface* s, const Vec2& place, const Neighbourhood& n, Weigh weigh, Mean* mean) {
+  for (std::uint32_t row = n.top; row <= n.bottom; ++row)
+    for (std::uint32_t column = n.left; column <= n.right; ++column) {
+      const std::uint32_t at = row * map.grid.columns + column;
+      const MappedSurface& m = map.surface[at];
+      if (m.triangle == kNone || (s && !shows_same(*s, m))) continue;
+      const float weight =
+          weigh(std::fabs(place.x - static_cast<float>(column))) * weigh(std::fabs(place.y - static_cast<float>(row)));
+      if (weight > 0) mean->add(map.light[at], weight);
+    }
+}
+
+// Light on a surface seen at a place of the map: from the four mapped pixels about it; if too few show the surface,
+// from the sixteen; if none does, from any of these. False if they show nothing.
+bool light_at(const LightMap& map, const Surface& s, const Vec2& place, Vec3* light) {
+  constexpr float kEnough = 1.0f / 64;  // chosen: below, the nearest one that shows the surface is a pixel or less away
+  constexpr std::uint32_t kWider = 1;
+  auto linear = [](float d) { return std::max(0.0f, 1 - d); };
+  auto wide = [](float d) { return 1 / (1 + d * d); };
+  Mean mean;
+  gather(map, &s, place, around(map.grid, place, 0), linear, &mean);
+  if (!(mean.weight >= kEnough)) {
+    const Neighbourhood wider = around(map.grid, place, kWider);
+    mean = Mean();
+    gather(map, &s, place, wider, wide, &mean);
+    if (!(mean.weight > 0)) gather(map, nullptr, place, wider, wide, &mean);
+  }
+  if (!(mean.weight > 0)) return false;
+  *light = mean.sum * (1 / mean.weight);
+  return true;
+}
+
+// Where the map shows the surface, in units of its grid. False if it does not.
+bool place_in_map(const LightMap& map, const CameraRays& camera, bool is_of_frame, std::uint32_t column,
+                  std::uint32_t row, const Vec3& point, Vec2* place) {
+  const auto pitch = static_cast<float>(map.grid.pitch);
+  Vec2 pixel = {static_cast<float>(column), static_cast<float>(row)};
+  if (!is_of_frame) {
+    if (!place_in_picture(map.camera, point, &pixel)) return false;
+    pixel = {pixel.x - 0.5f, pixel.y - 0.5f};
+    const bool inside = pixel.x > -1 && pixel.y > -1 && pixel.x < camera.width && pixel.y < camera.height;
+    if (!inside) return false;
+  }
+  *place = {std::clamp(pixel.x / pitch, 0.0f, static_cast<float>(map.grid.columns - 1)),
+            std::clamp(pixel.y / pitch, 0.0f, static_cast<float>(map.grid.rows - 1))};
+  return true;
+}
+
+bool same_camera(const CameraRays& a, const CameraRays& b) {
+  return a.eye == b.eye && a.forward == b.forward && a.right == b.right && a.up == b.up &&
+         a.orthographic == b.orthographic && a.width == b.width && a.height == b.height;
+}
+
+// The surface of a sample that takes light from a map: not one that others are seen through.
+bool find_surface(Tracer* tracer, const Hit* first_hits, std::uint32_t sample, std::uint32_t column, std::uint32_t row,
+                  Surface* s) {
+  const FrameData& frame = *tracer->frame;
+  const Settings& settings = frame.settings;
+  Hit hit = first_hits[(std::size_t(sample) * settings.height + row) * settings.width + column];
+  if (hit.triangle == kNoTriangle) return false;
+  Ray ray = pixel_ray(frame, column, row, rook_point(sample, settings.samples_per_pixel));
+  float passed;
+  if (!visible_surface(tracer, &ray, &hit, s, &passed) || !takes_indirect_light(*s)) return false;
+  return !(has(frame.mask, Effect::alpha_blend) && blends(*s->material, frame.mask));
+}
+
+struct RowsOfLight {
+  Renderer* renderer;
+  const Hit* first_hits;
+  const LightMap& map;
+  bool is_of_frame;
+};
+
+bool add_to_row(void* context, std::uint32_t thread, std::uint32_t row) {
+  const RowsOfLight& rows = *static_cast<RowsOfLight*>(context);
+  Renderer* renderer = rows.renderer;
+  Tracer* tracer = &renderer->tracers[thread];
+  const FrameData& frame = renderer->frame;
+  const std::uint32_t samples = frame.settings.samples_per_pixel;
+  const float share = 1 / static_cast<float>(samples);
+  Surface s;
+  for (std::uint32_t column = 0; column < frame.settings.width; ++column) {
+    Vec3 added = {0, 0, 0};
+    for (std::uint32_t sample = 0; sample < samples; ++sample) {
+      Vec2 place;
+      Vec3 light;
+      if (!find_surface(tracer, rows.first_hits, sample, column, row, &s)) continue;
+      if (!place_in_map(rows.map, frame.camera, rows.is_of_frame, column, row, s.point, &place)) continue;
+      if (!light_at(rows.map, s, place, &light)) continue;
+      Vec3 more = s.diffuse * (light - indirect_light(tracer, s));
+      if (has(frame.mask, Effect::clear_coat)) more = more * s.coat.passes;
+      added += more;
+    }
+    Vec3* pixel = &renderer->image[std::size_t(row) * frame.settings.width + column];
+    *pixel = max(*pixel + added * share, Vec3{0, 0, 0});
+  }
+  return true;
+}
+
+}  // namespace
+
+const char* light_map_unfit(const Renderer& renderer) {
+  const EffectMask mask = renderer.effects.mask;
+  if (has(mask, Effect::undersampling) || has(mask, Effect::selective)) return "they need every pixel traced";
+  if (has(mask, Effect::instant_radiosity)) return "this device renders the light itself";
+  if (has(mask, Effect::occlusion)) return "an occlusion texture hides part of the device's own light";
+  return nullptr;
+}
+
+std::size_t first_hit_count(const Settings& settings) {
+  return std::size_t(settings.width) * settings.height * settings.samples_per_pixel;
+}
+
+void take_mapped_surfaces(Renderer* renderer, const Hit* first_hits, const LightGrid& grid, MappedSurface* surfaces) {
+  CHECK(grid.pitch >= kLightPitchMin && grid.pitch <= kLightPitchMax);
+  Surface s;
+  for (std::uint32_t row = 0; row < grid.rows; ++row)
+    for (std::uint32_t column = 0; column < grid.columns; ++column) {
+      MappedSurface* m = &surfaces[row * grid.columns + column];
+      *m = {{0, 0, 0}, {0, 0, 0}, kNone};
+      if (find_surface(&renderer->tracers[0], first_hits, 0, column * grid.pitch, row * grid.pitch, &s))
+        *m = {s.point, s.normal, s.hit.triangle};
+    }
+}
+
+void add_mapped_light(Renderer* renderer, const Hit* first_hits, const LightMap& map, std::uint32_t row_begin,
+                      std::uint32_t row_end) {
+  CHECK(row_begin <= row_end && row_end <= renderer->settings.height);
+  CHECK(map.surface != nullptr && map.light != nullptr && light_map_unfit(*renderer) == nullptr);
+  RowsOfLight rows = {renderer, first_hits, map, same_camera(map.camera, renderer->frame.camera)};
+  share_items(renderer->workers, row_begin, row_end, add_to_row, &rows);
+}
+
+bool is_map_of_frame(const LightMap& map, const Renderer& renderer, double seconds) {
+  return map.seconds == seconds && same_camera(map.camera, renderer.frame.camera);
+}
+
+}  // namespace pocketray

@@ -1,0 +1,57 @@
+// Frames shared by effect: the device renders all rows with what indirect light it has itself (ambient light, or none),
+// a server renders the frame's indirect light at fewer pixels, and the device adds the difference (engine/light_map.h).
+// A map that is late is used for the frames after, where its camera saw their surfaces; without any, the device's own
+// light stays.
+#pragma once
+#include "engine/light_map.h"
+#include "split/effect_choice.h"
+#include "wire/message.h"
+
+namespace pocketray {
+
+// Chosen (tests/indirect/FIGURES.md): of 4 to 8 pixels, the least error for a sixth of a thin client's bytes.
+constexpr std::uint32_t kLightPitch = 6;
+
+struct LightOptions {
+  SplitKind split = SplitKind::rows;                    // rows: no light is asked for, and no memory taken
+  IndirectChoice indirect = IndirectChoice::automatic;  // that the servers render
+  std::uint32_t pitch = kLightPitch;                    // kLightPitchMin … kLightPitchMax
+  std::uint32_t every = 1;    // frames of a moving view to a map; one that rests gets its own in any case
+  std::uint64_t wait_ns = 0;  // for the frame's map, once its rows are traced; 0: as long as tracing took
+};
+
+struct ClientLight {
+  LightGrid grid;                    // pitch 0: no memory is planned
+  Array<Hit> first_hits;             // of the frame under way
+  Array<MappedSurface> surfaces[2];  // of the newest map, and of the one asked for
+  Array<Vec3> light[2];
+  std::uint32_t newest = 0;                        // index of these
+  LightMap map;                                    // the newest
+  FrameRequest map_request;                        // that it answers; frame 0: there is none
+  FrameRequest asked;                              // the request under way; frame 0: none
+  std::uint32_t asked_server = 0, last_asked = 0;  // last_asked: number of the last frame that asked
+  std::uint64_t asked_ns = 0;
+  CameraRays asked_camera;
+  bool has_surfaces = false, has_come = false;  // of the map asked for
+  // The frame under way.
+  bool by_effect = false;
+  bool rests = false;           // it shows what the last frame showed
+  std::uint64_t traced_ns = 0;  // when all of its rows were traced; 0: not yet
+  std::uint32_t rows_lit = 0;   // that have the map's light,
+  bool is_done = false;         // as all have that get any
+  EffectTimes times;
+  EffectChoice choice;
+  FrameRequest last;            // the last frame's
+  const char* unfit = nullptr;  // why frames cannot be shared so, as logged
+};
+
+std::size_t light_need(const Settings& settings, const LightOptions& options);
+// Of a message with a map.
+std::size_t light_message_bytes_max(const Settings& settings, const LightOptions& options);
+void make_light(const LightOptions& options, const Settings& settings, Arena* arena, ClientLight* light);
+
+struct Client;
+// Chooses how the next frame is shared, and sets the renderer's indirect light accordingly.
+Status choose_split(Renderer* renderer, Client* client);
+
+}  // namespace pocketray
