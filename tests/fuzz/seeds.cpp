@@ -139,16 +139,17 @@ std::vector<FuzzSeed> text_seeds() {
     append(&bytes, Bytes(text.begin(), text.end()));
     return FuzzSeed{name, bytes};
   };
-  return {seed("size", 0, "320x240"),
-          seed("bytes", 1, "24.5M"),
-          seed("camera", 2, "0,1.5,-3 0,1,0 0,1,0 40"),
-          seed("exposure", 3, "-1.5"),
-          seed("effects", 4, "auto,-shadow"),
-          seed("callgrind", 5, "version: 1\ndesc: Trigger: --dump-before=work\nevents: Ir\ntotals: 123456\n"),
-          seed("state", 6,
-               R"({"key": {}, "rounds": 1, "counted": "", "references": ["a"], "points": {"samples 4": )"
-               R"({"ns_per_pixel": [812.5], "instructions_per_pixel": "none", "bytes_per_frame": 9500.5, "errors": [0.1, )"
-               R"(0.1, 0.01, 0.1, 0.1, 0.1, 0.1, "inf"]}}})")};
+  return {
+      seed("size", 0, "320x240"),
+      seed("bytes", 1, "24.5M"),
+      seed("camera", 2, "0,1.5,-3 0,1,0 0,1,0 40"),
+      seed("exposure", 3, "-1.5"),
+      seed("effects", 4, "auto,-shadow"),
+      seed("callgrind", 5, "version: 1\ndesc: Trigger: --dump-before=work\nevents: Ir\ntotals: 123456\n"),
+      seed("state", 6,
+           R"({"key": {}, "rounds": 1, "counted": "", "references": ["a"], "points": {"samples 4": )"
+           R"({"ns_per_pixel": [812.5], "instructions_per_pixel": "none", "bytes_per_frame": 9500.5, "errors": [0.1, )"
+           R"(0.1, 0.01, 0.1, 0.1, 0.1, 0.1, "inf"]}}})")};
 }
 
 // A well-behaved server with each kind of device; then one that changes, drops, repeats and adds messages.

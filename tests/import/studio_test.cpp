@@ -89,9 +89,11 @@ TEST_CASE("studio_hangs_its_boxes_high") {
 // no side is darker. Method: integrals over the studio; the lights' cosines.
 TEST_CASE("studio_leaves_models_as_bright_as_default_lights_do") {
   auto model = triangle_of("Kd 1 1 1");
-  const Camera camera = default_camera(model.scene, 4.0f / 3);
+  const Box bounds = scene_bounds(model.scene);
+  const DefaultView view = find_default_view(model.scene, bounds);
+  const Camera camera = default_camera(view, bounds, 4.0f / 3);
   Light lights[kDefaultLightCount];
-  default_lights(model.scene, camera, lights);
+  default_lights(view, bounds, camera, lights);
   auto by_lights = [&](const Vec3d& normal) {
     double sum = 0;
     for (const Light& light : lights)
