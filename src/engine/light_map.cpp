@@ -161,6 +161,9 @@ std::size_t first_hit_count(const Settings& settings) {
 
 void take_mapped_surfaces(Renderer* renderer, const Hit* first_hits, const LightGrid& grid, MappedSurface* surfaces) {
   CHECK(grid.pitch >= kLightPitchMin && grid.pitch <= kLightPitchMax);
+  CHECK(first_hits != nullptr && surfaces != nullptr);
+  CHECK_EQ(grid.columns, grid_side(renderer->settings.width, grid.pitch));
+  CHECK_EQ(grid.rows, grid_side(renderer->settings.height, grid.pitch));
   Surface s;
   for (std::uint32_t row = 0; row < grid.rows; ++row)
     for (std::uint32_t column = 0; column < grid.columns; ++column) {
@@ -174,6 +177,7 @@ void take_mapped_surfaces(Renderer* renderer, const Hit* first_hits, const Light
 void add_mapped_light(Renderer* renderer, const Hit* first_hits, const LightMap& map, std::uint32_t row_begin,
                       std::uint32_t row_end) {
   CHECK(row_begin <= row_end && row_end <= renderer->settings.height);
+  CHECK(first_hits != nullptr);
   CHECK(map.surface != nullptr && map.light != nullptr && light_map_unfit(*renderer) == nullptr);
   RowsOfLight rows = {renderer, first_hits, map, same_camera(map.camera, renderer->frame.camera)};
   share_items(renderer->workers, row_begin, row_end, add_to_row, &rows);

@@ -302,7 +302,7 @@ def message(kind, fields=b""):
     return head + struct.pack("<I", zlib.crc32(head + fields)) + fields
 
 
-def hello(version=27, more=b""):
+def hello(version=28, more=b""):
     return message(HELLO, b"PRAY" + struct.pack("<HHIQH", version, 8192, 1 << 21, 1 << 30, 256) + more)
 
 
@@ -350,7 +350,7 @@ class Device:
         if greets:
             self.send(hello())
             kind, fields = self.receive()
-            check(kind == HELLO and fields[:6] == b"PRAY\33\0", "the server says hello first, of version 27")
+            check(kind == HELLO and fields[:6] == b"PRAY\34\0", "the server says hello first, of version 28")
             self.side, self.message_bytes, self.scene_bytes, self.price = struct.unpack("<HIQH", fields[6:])
             check(self.price >= 256, "the hello's price")
 
