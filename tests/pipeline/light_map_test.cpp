@@ -100,6 +100,41 @@ TEST_CASE("light_map_of_the_own_light_changes_nothing") {
   }
 }
 
+// Goal: a pixel takes the light of its own surface, at its own place, whatever the pitch and the view of the map.
+// Method: light that says where and on which wall of the cube it is.
+TEST_CASE("light_map_gives_surfaces_their_own_light") {
+  const std::unique_ptr<BuiltScene> built = build_builtin("cube");
+  const std::unique_ptr<TestRenderer> device = make_renderer(built->scene, settings_of(Effect::ambient));
+  const std::unique_ptr<TestRenderer> light = make_renderer(built->scene, settings_of(Effect::ambient));
+  Renderer* d = &device->renderer;
+  const Vec3 low = d->bounds.low, size = extent(d->bounds);
+  auto painted = [&](const std::vector<Hit>& hits, std::uint32_t pitch) {
+    std::unique_ptr<OwnedMap> owned = map_of(&light->renderer, d, hits, pitch);
+    for (std::size_t i = 0; i < owned->lights.size(); ++i) {
+      const MappedSurface& m = owned->surfaces[i];
+      if (m.triangle == kNone) continue;
+      const Vec3 place = m.point - low;
+      owned->lights[i] = abs(m.normal) + Vec3{place.x / size.x, place.y / size.y, place.z / size.z};
+    }
+    return owned;
+  };
+  auto with = [&](const LightMap& map) {
+    const std::vector<Hit> hits = traced(d);
+    add_mapped_light(d, hits.data(), map, 0, d->settings.height);
+    return picture_of(*d);
+  };
+  const auto before = painted(traced(d), 8);
+  const double by_pitch = mean_difference(with(before->map), with(painted(traced(d), 2)->map));
+  CAPTURE(by_pitch);
+  CHECK(by_pitch < 0.015);
+  Camera camera = d->camera;
+  camera.eye = camera.target + (camera.eye - camera.target) * 0.8f + Vec3{0.1f, 0.1f, 0} * camera.eye.z;
+  REQUIRE(set_camera(d, camera).ok);
+  const double by_view = mean_difference(with(before->map), with(painted(traced(d), 2)->map));
+  CAPTURE(by_view);
+  CHECK(by_view < 0.015);
+}
+
 // Goal: the light of virtual lights, mapped at some pixels, gives about the picture that has it everywhere, and the
 // more so the more are mapped. A map of another view of the same scene does so, too, where it shows the surfaces.
 TEST_CASE("light_map_stands_in_for_light_at_every_pixel") {
