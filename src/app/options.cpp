@@ -235,7 +235,8 @@ void add_servers_options(Command command, ServersOptions* o) {
       .add_option(
           "--split", o->split,
           "what a frame is shared by: rows, which has the pixels of the device alone; effect: the device renders "
-          "every pixel without --indirect, a server that light at fewer pixels; auto: whichever is faster")
+          "every pixel without --indirect, a server that light at fewer pixels; auto: whichever is faster, or both, "
+          "where servers have whole rows and the device the others without --indirect")
       .one_of({"rows", "effect", "auto"})
       .default_str("rows")
       .group(group);

@@ -99,14 +99,19 @@ bool same_camera(const CameraRays& a, const CameraRays& b) {
          a.orthographic == b.orthographic && a.width == b.width && a.height == b.height;
 }
 
-// The surface of a sample that takes light from a map: not one that others are seen through.
+// The surface of a sample that takes light from a map: not one that others are seen through. Without first hits, its
+// ray is traced.
 bool find_surface(Tracer* tracer, const Hit* first_hits, std::uint32_t sample, std::uint32_t column, std::uint32_t row,
                   Surface* s) {
   const FrameData& frame = *tracer->frame;
   const Settings& settings = frame.settings;
-  Hit hit = first_hits[(std::size_t(sample) * settings.height + row) * settings.width + column];
-  if (hit.triangle == kNoTriangle) return false;
   Ray ray = pixel_ray(frame, column, row, rook_point(sample, settings.samples_per_pixel));
+  Hit hit;
+  if (first_hits)
+    hit = first_hits[(std::size_t(sample) * settings.height + row) * settings.width + column];
+  else
+    frame.first_rays->closest(frame.accel, ray, visible_filter(frame), &hit, &tracer->stats);
+  if (hit.triangle == kNoTriangle) return false;
   float passed;
   if (!visible_surface(tracer, &ray, &hit, s, &passed) || !takes_indirect_light(*s)) return false;
   return !(has(frame.mask, Effect::alpha_blend) && blends(*s->material, frame.mask));
@@ -159,7 +164,8 @@ std::size_t first_hit_count(const Settings& settings) {
   return std::size_t(settings.width) * settings.height * settings.samples_per_pixel;
 }
 
-void take_mapped_surfaces(Renderer* renderer, const Hit* first_hits, const LightGrid& grid, MappedSurface* surfaces) {
+void take_mapped_surfaces(Renderer* renderer, const Hit* first_hits, std::uint32_t traced_end, const LightGrid& grid,
+                          MappedSurface* surfaces) {
   CHECK(grid.pitch >= kLightPitchMin && grid.pitch <= kLightPitchMax);
   CHECK(first_hits != nullptr && surfaces != nullptr);
   CHECK_EQ(grid.columns, grid_side(renderer->settings.width, grid.pitch));
@@ -169,7 +175,8 @@ void take_mapped_surfaces(Renderer* renderer, const Hit* first_hits, const Light
     for (std::uint32_t column = 0; column < grid.columns; ++column) {
       MappedSurface* m = &surfaces[row * grid.columns + column];
       *m = {{0, 0, 0}, {0, 0, 0}, kNone};
-      if (find_surface(&renderer->tracers[0], first_hits, 0, column * grid.pitch, row * grid.pitch, &s))
+      const Hit* hits = row * grid.pitch < traced_end ? first_hits : nullptr;
+      if (find_surface(&renderer->tracers[0], hits, 0, column * grid.pitch, row * grid.pitch, &s))
         *m = {s.point, s.normal, s.hit.triangle};
     }
 }

@@ -41,8 +41,10 @@ const char* light_map_unfit(const Renderer& renderer);
 // Number of first hits that the frame keeps for what follows: set FrameData::first_hits after prepare_frame().
 std::size_t first_hit_count(const Settings& settings);
 
-// The surfaces of mapped pixels, by the first hits of the traced frame. `surfaces` has light_count(grid) places.
-void take_mapped_surfaces(Renderer* renderer, const Hit* first_hits, const LightGrid& grid, MappedSurface* surfaces);
+// The surfaces of mapped pixels, by the first hits of the frame's rows above `traced_end`; of those below, rays are
+// traced. `surfaces` has light_count(grid) places.
+void take_mapped_surfaces(Renderer* renderer, const Hit* first_hits, std::uint32_t traced_end, const LightGrid& grid,
+                          MappedSurface* surfaces);
 
 // Replaces the renderer's own indirect light on the first surfaces of rows of its image by that of the map. Where these
 // are behind glass or in mirrors, the own light stays. The rows have been traced with these first hits.

@@ -13,8 +13,6 @@ constexpr double kPartMin = 0.25;
 // The cap as an integer. Costs of rows are rounded up, so kImageSideMax rows lose at most 2⁻¹⁷ of it.
 constexpr double kUnitsOfCap = 0x1p30;
 
-double value_of(const Smoothed& s, double unknown) { return is_known(s) ? static_cast<double>(s.value) : unknown; }
-
 // Entry of a row table. NaN and negative values count as 0.
 std::uint64_t table_entry(double x) {
   constexpr double max = static_cast<double>(kRowTableMax);
@@ -45,7 +43,7 @@ void fold_device_rows(CostModel* model) {
   double before = 0, after = 0;
   for (RowModel& row : model->rows) {
     if (!(row.device_ns_seen > 0)) continue;
-    double old_value = value_of(row.device_ns, 0);
+    double old_value = value_or(row.device_ns, 0);
     if (row.guessed) row.device_ns = Smoothed();  // next to a guess, a measurement could seem an outlier
     smooth(&row.device_ns, static_cast<double>(row.device_ns_seen));
     row.guessed = false;
@@ -56,11 +54,22 @@ void fold_device_rows(CostModel* model) {
     if (!(row.device_ns_seen > 0)) scale(&row.device_ns, after / before);
 }
 
+// Rows of the device's own light: what they took is a part of the whole rows' time, the same for all.
+void fold_own_light(CostModel* model) {
+  double own = 0, whole = 0;
+  for (const RowModel& row : model->rows)
+    if (row.device_ns_seen > 0 && is_known(row.device_ns) && !row.guessed)
+      own += static_cast<double>(row.device_ns_seen), whole += static_cast<double>(row.device_ns.value);
+  if (whole > 0) smooth(&model->light.own_part, own / whole);
+  const auto part = static_cast<float>(value_or(model->light.own_part, 1));
+  for (RowModel& row : model->rows) row.device_ns_seen /= part;
+}
+
 void fold_server_rows(CostModel* model, std::uint32_t server) {
   double mean = mean_device_ns(*model), device_sum = 0, server_sum = 0;
   for (const RowModel& row : model->rows) {
     if (!(row.server_ns_seen > 0) || row.server_seen != server) continue;
-    device_sum += value_of(row.device_ns, mean);
+    device_sum += value_or(row.device_ns, mean);
     server_sum += static_cast<double>(row.server_ns_seen);
   }
   if (!(device_sum > 0)) return;
@@ -192,7 +201,13 @@ void observe_price(CostModel* model, std::uint32_t server, double price) {
   model->servers[server].price_stated = price >= 1 ? static_cast<float>(std::fmin(price, max)) : 1;
 }
 
-void end_frame(CostModel* model) {
+void observe_map(CostModel* model, double work_ns, double bytes, double arrival_ns) {
+  smooth(&model->light.server_ns, work_ns), smooth(&model->light.bytes, bytes);
+  smooth(&model->light.arrival_ns, arrival_ns);
+}
+
+void end_frame(CostModel* model, bool by_effect) {
+  if (by_effect) fold_own_light(model);
   fold_device_rows(model);
   for (std::uint32_t i = 0; i < model->server_count; ++i) {
     fold_server_rows(model, i);
@@ -208,25 +223,26 @@ void end_frame(CostModel* model) {
   }
 }
 
-SplitProblem make_problem(CostModel* model, const SplitWish& wish) {
+SplitProblem make_problem(CostModel* model, const SplitWish& wish, const RowsOfDevice& rows) {
   SplitProblem p;
   p.row_count = model->rows.count;
   p.server_count = model->server_count;
   double mean_ns = mean_device_ns(*model), mean_row_bytes = mean_bytes(*model);
-  auto device_ns = [&](std::uint32_t row) { return value_of(model->rows[row].device_ns, mean_ns); };
-  auto bytes = [&](std::uint32_t row) { return value_of(model->rows[row].bytes, mean_row_bytes); };
-  double unpack = value_of(model->unpack_ns_per_byte, 0), link = value_of(model->link_ns_per_byte, 0);
+  auto device_ns = [&](std::uint32_t row) { return value_or(model->rows[row].device_ns, mean_ns); };
+  auto bytes = [&](std::uint32_t row) { return value_or(model->rows[row].bytes, mean_row_bytes); };
+  double unpack = value_or(model->unpack_ns_per_byte, 0), link = value_or(model->link_ns_per_byte, 0);
   double per_cost = cost_scale(wish);
+  const double map_ns = value_or(model->light.server_ns, 0), map_bytes = value_or(model->light.bytes, 0);
   bool cost_is_bytes = wish.goal == SplitGoal::time;
   std::uint32_t tables = 0;
   p.device_ns = add_table(model, &tables, [&](std::uint32_t row) {
-    return device_ns(row) * static_cast<double>(model->rows[row].device_part);
+    return device_ns(row) * (rows.part >= 0 ? rows.part : static_cast<double>(model->rows[row].device_part));
   });
   p.unpack_ns = add_table(model, &tables, [&](std::uint32_t row) { return bytes(row) * unpack; });
   p.link_ns = add_table(model, &tables, [&](std::uint32_t row) { return bytes(row) * link; });
   double device_pixel = cost_is_bytes ? 0 : model->cost_per_device_pixel * per_cost;
   p.device_cost = add_table(model, &tables, [&](std::uint32_t) { return device_pixel * model->width; });
-  p.device_start_ns = table_entry(value_of(model->device_start_ns, 0));
+  p.device_start_ns = table_entry(value_or(model->device_start_ns, 0));
   p.weigh_cost = wish.goal == SplitGoal::time_and_cost;
   if (wish.goal == SplitGoal::time_under_cap) p.cost_cap = wish.cap > 0 ? static_cast<std::uint64_t>(kUnitsOfCap) : 0;
   std::uint64_t least_start = kRowTableMax;
@@ -243,13 +259,16 @@ SplitProblem make_problem(CostModel* model, const SplitWish& wish) {
     });
     t->transfer_ns = add_table(model, &tables, [&](std::uint32_t row) { return bytes(row) * per_byte; });
     t->cost = add_table(model, &tables, [&](std::uint32_t row) { return bytes(row) * byte_cost; });
-    t->start_ns = table_entry(value_of(server.start_ns, 0));
+    t->start_ns = table_entry(value_or(server.start_ns, 0) + (i == rows.mapper ? map_ns + map_bytes * per_byte : 0));
     t->chunk_rows = server.chunk_rows > 0 ? server.chunk_rows : 1;
     const double row_ns = static_cast<double>(t->render_ns[p.row_count]) / p.row_count;
     t->chunk_row_ns = table_entry(std::fmin(row_ns, mean_row_bytes * per_byte));
     if (t->start_ns < least_start) least_start = t->start_ns;
   }
   p.link_start_ns = least_start;
+  if (rows.mapper >= model->server_count) return p;
+  p.link_start_ns = table_entry(static_cast<double>(least_start) + map_bytes * link);
+  p.device_least_ns = table_entry(value_or(model->light.arrival_ns, 0));
   return p;
 }
 

@@ -33,6 +33,14 @@ struct ServerModel {
 
 constexpr std::uint8_t kNoHolder = 0xFF;
 
+// Of frames whose indirect light a server maps (engine/light_map.h), for the rows that the device renders without it.
+struct LightModel {
+  Smoothed own_part;    // device time of a row with its own light, to add the map's included, over the whole row's
+  Smoothed server_ns;   // work on a map, at its price
+  Smoothed bytes;       // of a map
+  Smoothed arrival_ns;  // from the request to the map's arrival
+};
+
 struct RowModel {
   Smoothed device_ns;  // wall time of the device for the whole row, whether it rendered it or not
   Smoothed bytes;      // as sent
@@ -51,6 +59,7 @@ struct CostModel {
   Array<RowModel> rows;
   std::uint32_t server_count = 0;
   ServerModel servers[kServerCountMax];
+  LightModel light;
   Smoothed device_start_ns;     // before the first row: pose, refit
   Smoothed unpack_ns_per_byte;  // device time to decode what is received
   Smoothed link_ns_per_byte;    // of the link that all servers share; unknown: only each server's own bound applies
@@ -120,13 +129,23 @@ void observe_link(CostModel* model, double bytes, double ns);
 // Time per byte from one server while it was alone on the shared link, which is no slower than that.
 void observe_own_link(CostModel* model, double ns_per_byte);
 
+// A map of the frame's light came: the server's work on it at its price, its bytes, and the time since the request.
+void observe_map(CostModel* model, double work_ns, double bytes, double arrival_ns);
+
 // Applies the frame's measurements. If all rows of the device changed their price, the servers' rows are assumed to
 // have changed alike, since a new scene and a throttled device look the same. The remaining difference common to a
 // server's rows is its speed; the differences between them belong to the rows. Prices follow those stated.
-void end_frame(CostModel* model);
+// by_effect: the device's rows had its own light and the map's.
+void end_frame(CostModel* model, bool by_effect = false);
+
+// How the device renders its rows of a frame.
+struct RowsOfDevice {
+  double part = -1;            // of each row's time; negative: its device_part
+  std::uint32_t mapper = ~0u;  // index of the server that maps the frame's light for them; ~0: none does
+};
 
 // The problem for the next frame. Its tables lie in the model and are valid until the next call. Whatever the numbers,
 // its splits lie in [0, row_count] and its times are finite; a server with an unknown or invalid number gets no rows.
-SplitProblem make_problem(CostModel* model, const SplitWish& wish);
+SplitProblem make_problem(CostModel* model, const SplitWish& wish, const RowsOfDevice& rows = RowsOfDevice());
 
 }  // namespace pocketray

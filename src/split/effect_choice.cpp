@@ -3,32 +3,29 @@
 #include <algorithm>
 
 namespace pocketray {
-
-double predict_effect_ns(const EffectChoice& c) {
-  if (!is_known(c.device_ns)) return 0;
-  auto value = [](const Smoothed& s) { return static_cast<double>(s.value); };
-  return value(c.prepare_ns) + std::max(value(c.device_ns), value(c.server_ns) + value(c.transfer_ns)) +
-         value(c.add_ns);
+void observe_effect_times(EffectModel* m, const EffectTimes& t) {
+  smooth(&m->prepare_ns, t.prepare_ns), smooth(&m->device_ns, t.device_ns), smooth(&m->server_ns, t.server_ns);
+  smooth(&m->transfer_ns, t.transfer_ns), smooth(&m->add_ns, t.add_ns);
 }
 
-void observe_rows_frame(EffectChoice* c, double ns) {
-  smooth(&c->rows_ns, ns);
-  ++c->rows_count;
+double predict_effect_ns(const EffectModel& m) {
+  if (!is_known(m.device_ns)) return 0;
+  return value_or(m.prepare_ns, 0) +
+         std::max(value_or(m.device_ns, 0), value_or(m.server_ns, 0) + value_or(m.transfer_ns, 0)) +
+         value_or(m.add_ns, 0);
 }
 
-void observe_effect_frame(EffectChoice* c, const EffectTimes& t) {
-  smooth(&c->prepare_ns, t.prepare_ns), smooth(&c->device_ns, t.device_ns), smooth(&c->server_ns, t.server_ns);
-  smooth(&c->transfer_ns, t.transfer_ns), smooth(&c->add_ns, t.add_ns);
-  ++c->effect_count;
+void observe_choice(EffectChoice* c, bool by_effect, double predicted_ns, double ns) {
+  ++(by_effect ? c->effect_count : c->rows_count);
+  if (predicted_ns > 0) smooth(by_effect ? &c->effect_error : &c->rows_error, ns / predicted_ns);
 }
 
-bool choose_by_effect(EffectChoice* c) {
+bool choose_by_effect(EffectChoice* c, double rows_ns, double effect_ns) {
   const std::uint32_t tried = c->by_effect ? c->effect_count : c->rows_count;
   if (tried < kTrialFrames) return c->by_effect;
-  const double effect_ns = predict_effect_ns(*c), rows_ns = static_cast<double>(c->rows_ns.value);
   const bool is_known_both = effect_ns > 0 && rows_ns > 0;
-  const double own = c->by_effect ? effect_ns : rows_ns, other = c->by_effect ? rows_ns : effect_ns;
-  if (!is_known_both || tried >= kRetryFrames || other < kFasterPart * own) {
+  const bool other_is_better = c->by_effect ? !(effect_ns < rows_ns) : effect_ns < kFasterPart * rows_ns;
+  if (!is_known_both || tried >= kRetryFrames || other_is_better) {
     c->by_effect = !c->by_effect;
     c->rows_count = c->effect_count = 0;
   }

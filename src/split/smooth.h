@@ -12,6 +12,9 @@ struct Smoothed {
 };
 
 inline bool is_known(const Smoothed& s) { return s.value > 0; }
+inline double value_or(const Smoothed& s, double unknown) {
+  return is_known(s) ? static_cast<double>(s.value) : unknown;
+}
 
 // Adds a sample. Invalid ones (NaN, infinite, zero, or negative: a clock that stood still or went back) change nothing.
 // The value stays positive and finite.

@@ -12,7 +12,7 @@ std::uint64_t larger(std::uint64_t a, std::uint64_t b) { return a > b ? a : b; }
 // Time of the device, and of the link into it, if the device renders the rows above `rows`.
 std::uint64_t near_ns(const SplitProblem& p, std::uint32_t rows) {
   std::uint64_t device = p.device_ns[rows] + (p.unpack_ns[p.row_count] - p.unpack_ns[rows]);
-  if (rows > 0) device += p.device_start_ns;
+  if (rows > 0) device = larger(device + p.device_start_ns, p.device_least_ns);
   std::uint64_t link = rows < p.row_count ? p.link_start_ns + (p.link_ns[p.row_count] - p.link_ns[rows]) : 0;
   return larger(device, link);
 }

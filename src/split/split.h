@@ -38,7 +38,8 @@ struct SplitProblem {
   RowTable link_ns = nullptr;                            // time per received row on the link that all servers share
   RowTable device_cost = nullptr;                        // of rendering a row on the device
   std::uint64_t device_start_ns = 0, link_start_ns = 0;  // before the first row; at most kRowTableMax
-  bool weigh_cost = false;  // true: minimise time + cost; false: time, then cost among equals
+  std::uint64_t device_least_ns = 0;  // the device finishes no sooner if it has rows; at most kRowTableMax
+  bool weigh_cost = false;            // true: minimise time + cost; false: time, then cost among equals
   std::uint64_t cost_cap = ~std::uint64_t(0);
   ServerTables servers[kServerCountMax];
 };

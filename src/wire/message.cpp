@@ -111,7 +111,7 @@ void fields(Io& io, Settings* settings) {
 template <class Io>
 void row_fields(Io& io, FrameRequest* m, std::uint32_t height) {
   number(io, &m->row_begin), number(io, &m->row_end);
-  io.require(m->row_begin < m->row_end && m->row_end <= height);
+  io.require(m->row_begin <= m->row_end && m->row_end <= height);
   io.length_of(&m->run_count);
   if (m->run_count > kRunCountMax) return;
   for (std::uint32_t i = 0; i < m->run_count; ++i) number(io, &m->runs[i].row_count), number(io, &m->runs[i].place);
@@ -135,6 +135,7 @@ void fields(Io& io, FrameRequest* m) {
   number(io, &m->light_pitch);
   io.require(m->light_pitch == 0 || (m->light_pitch >= kLightPitchLow && m->light_pitch <= kLightPitchHigh));
   row_fields(io, m, m->settings.height);
+  io.require(asks_for_something(*m));
 }
 
 // The fields that change from frame to frame.

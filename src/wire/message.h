@@ -19,7 +19,7 @@ constexpr int settings_on_wire() {
   return count;
 }
 // Adding a setting to requests adds 1 to the version; for any other change of the format, raise the first number.
-constexpr std::uint16_t kWireVersion = 18 + (settings_on_wire() - 6);
+constexpr std::uint16_t kWireVersion = 19 + (settings_on_wire() - 6);
 constexpr std::uint32_t kHeaderBytes = 8;
 constexpr std::uint32_t kPieceBytesMax = 1u << 16;  // of a scene, per message
 constexpr std::uint32_t kPingBytesMax = 1u << 16;   // of a pong's payload
@@ -109,7 +109,8 @@ struct FrameRequest {
   std::uint16_t chunk_rows = 1;  // of a chunk, at most; no chunk has rows of two runs
   RowCoding coding = RowCoding::lossless;
   bool coarse_first = false;     // a coarse picture of the whole frame may come before the rows
-  std::uint8_t light_pitch = 0;  // a light_map with a light every so many pixels comes instead of rows; 0: rows
+  std::uint8_t light_pitch = 0;  // a light_map with a light every so many pixels comes before the rows, which may be
+                                 // none; 0: none
   std::uint8_t run_count = 0;    // 0: all rows are one run
   RowRun runs[kRunCountMax];     // from top to bottom; their places are a permutation of 0 … run_count − 1
 };
@@ -213,6 +214,10 @@ struct ViewEntry {
   std::uint32_t triangle_count = 0;
   Box bounds = {{0, 0, 0}, {0, 0, 0}};  // low ≤ high
 };
+
+constexpr bool asks_for_something(const FrameRequest& request) {
+  return request.row_begin < request.row_end || request.light_pitch > 0;
+}
 
 // The member for the type is valid, the others have their defaults.
 struct Message {

@@ -137,7 +137,6 @@ void send_light() {
   message.light_map.frame = q.frame, message.light_map.light_ps = 10'000'000;
   const std::size_t byte_count = encode_light(light.data(), grid.columns, grid.rows, 0, bytes.data());
   message.light_map.bytes = {bytes.data(), static_cast<std::uint32_t>(byte_count)};
-  peer->due = RowSequence();
   send(message);
 }
 
@@ -179,7 +178,7 @@ void answer(const Message& asked) {
       else
         peer->request = asked.frame_request;
       peer->due = first_rows(peer->request);
-      if (peer->request.light_pitch > 0) return send_light();
+      if (peer->request.light_pitch > 0) send_light();
       return peer->request.coarse_first ? send_coarse() : void();
     case MessageType::cancel:
       peer->due = RowSequence();
@@ -249,7 +248,8 @@ void share_frames(FuzzInput* input, std::uint8_t flags) {
   Settings settings = renderer->settings;
   settings.indirect = flags & 32 ? indirect_choice(Effect::instant_radiosity) : IndirectChoice::automatic;
   CHECK(change_settings(renderer, settings).ok);
-  o.light.split = flags & 32 ? SplitKind::effect : SplitKind::rows;
+  const SplitKind by_effect = flags & 64 ? SplitKind::automatic : SplitKind::effect;
+  o.light.split = flags & 32 ? by_effect : SplitKind::rows;
   o.light.indirect = settings.indirect;
   o.pace.ns_per_pixel = kDeviceNs;
   o.silence_timeout_ns = o.prepare_timeout_ns = o.connect_timeout_ns = 300 * kMs;

@@ -166,9 +166,11 @@ std::vector<FuzzSeed> client_seeds() {
     bytes[0] = flags;
     seeds.push_back({flags == 16 ? "thin_coarse" : "scene_coarse", bytes});
   }
-  Bytes light(16, 0);
-  light[0] = 33;
-  seeds.push_back({"scene_light", light});
+  for (std::uint8_t flags : {33, 97}) {
+    Bytes bytes(16, 0);
+    bytes[0] = flags;
+    seeds.push_back({flags == 33 ? "scene_light" : "scene_light_and_rows", bytes});
+  }
   // As below, of the light map.
   seeds.push_back({"changes_a_light_map", {33, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 192, 9, 1, 0, 192, 20, 255, 0}});
   Bytes inquiry(16, 0);

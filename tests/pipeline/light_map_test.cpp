@@ -51,7 +51,7 @@ std::unique_ptr<OwnedMap> map_of(Renderer* light, Renderer* device, const std::v
   auto owned = std::make_unique<OwnedMap>();
   const LightGrid grid = light_grid(device->settings, pitch);
   owned->surfaces.resize(light_count(grid)), owned->lights.resize(light_count(grid));
-  take_mapped_surfaces(device, hits.data(), grid, owned->surfaces.data());
+  take_mapped_surfaces(device, hits.data(), device->settings.height, grid, owned->surfaces.data());
   light->camera = device->camera, light->camera_overridden = true;
   REQUIRE(prepare_frame(light, seconds).ok);
   for (std::uint32_t i = 0; i < light_count(grid); ++i) {
@@ -97,6 +97,31 @@ TEST_CASE("light_map_of_the_own_light_changes_nothing") {
         for (int c = 0; c < 3; ++c)
           REQUIRE(std::fabs(device->renderer.image[k][c] - before[k][c]) <= 1e-6f * (1 + before[k][c]));
     }
+  }
+}
+
+// Goal: mapped pixels of rows that others trace show the same surfaces.
+TEST_CASE("light_map_of_rows_not_traced_here_shows_the_same") {
+  for (const char* scene : {"cornell", "seesaw"}) {
+    const std::unique_ptr<BuiltScene> built = build_builtin(scene);
+    const std::unique_ptr<TestRenderer> device = make_renderer(built->scene, settings_of(Effect::ambient));
+    Renderer* d = &device->renderer;
+    std::vector<Hit> hits = traced(d);
+    const LightGrid grid = light_grid(d->settings, 3);
+    std::vector<MappedSurface> all(light_count(grid)), some(light_count(grid));
+    take_mapped_surfaces(d, hits.data(), d->settings.height, grid, all.data());
+    const std::uint32_t traced_end = 13;
+    std::fill(hits.begin() + traced_end * d->settings.width, hits.end(), Hit());
+    take_mapped_surfaces(d, hits.data(), traced_end, grid, some.data());
+    int shown = 0;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      REQUIRE(some[i].triangle == all[i].triangle);
+      if (all[i].triangle == kNone) continue;
+      REQUIRE(some[i].point == all[i].point);
+      REQUIRE(some[i].normal == all[i].normal);
+      ++shown;
+    }
+    CHECK(shown > int(all.size() / 4));
   }
 }
 

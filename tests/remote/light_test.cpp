@@ -8,30 +8,13 @@
 
 #include "engine/trace_frame.h"
 #include "hostile_rig.h"
-#include "split_rig.h"
+#include "light_rig.h"
 #include "support/effort.h"
 #include "wire/light_coder.h"
 
 using namespace pocketray;
 
 namespace {
-
-constexpr IndirectChoice kVirtual = indirect_choice(Effect::instant_radiosity),
-                         kAmbient = indirect_choice(Effect::ambient);
-
-LightOptions by_effect(std::uint32_t pitch = 6) {
-  LightOptions light;
-  light.split = SplitKind::effect, light.indirect = kVirtual, light.pitch = pitch;
-  light.wait_ns = 10'000'000'000;
-  return light;
-}
-
-SplitRigOptions effect_rig(const char* scene) {
-  SplitRigOptions o;
-  o.scene = scene, o.compares = false;
-  o.client.light = by_effect();
-  return o;
-}
 
 // The lights of a frame as a device gets them, rendered here; free ones are negative.
 std::vector<Vec3> lights_here(Renderer* renderer, std::uint32_t pitch) {
@@ -45,34 +28,6 @@ std::vector<Vec3> lights_here(Renderer* renderer, std::uint32_t pitch) {
       lights.push_back(renderer->image[span.row * renderer->settings.width + span.column_begin]);
     }
   return lights;
-}
-
-double mean_error(const std::vector<std::uint8_t>& a, const std::vector<std::uint8_t>& b) {
-  double sum = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) sum += std::abs(int(a[i]) - int(b[i]));
-  return sum / static_cast<double>(a.size());
-}
-
-std::vector<std::uint8_t> pixels_of(const Client& client) { return {client.pixels.begin(), client.pixels.end()}; }
-
-// The device's frame with its own indirect light.
-std::vector<std::uint8_t> ambient_pixels(SplitRig* rig, double seconds) {
-  Settings settings = rig->whole->renderer.settings;
-  const IndirectChoice before = settings.indirect;
-  settings.indirect = kAmbient;
-  REQUIRE(change_settings(&rig->whole->renderer, settings).ok);
-  const std::vector<std::uint8_t> pixels = rig->local_pixels(seconds);
-  settings.indirect = before;
-  REQUIRE(change_settings(&rig->whole->renderer, settings).ok);
-  return pixels;
-}
-
-void turn(Renderer* renderer, float degrees) {
-  Camera camera = renderer->camera;
-  const Vec3 way = camera.eye - camera.target;
-  const float angle = degrees * kPiF / 180, c = 1 - angle * angle / 2, s = angle;
-  camera.eye = camera.target + Vec3{way.x * c + way.z * s, way.y, way.z * c - way.x * s};
-  REQUIRE(set_camera(renderer, camera).ok);
 }
 
 Message light_message(std::uint32_t frame, const std::vector<std::uint8_t>& bytes) {
@@ -119,6 +74,39 @@ TEST_CASE("light_map_has_the_light_of_the_frame") {
           CHECK(compared > int(got.size()));
         }
   }
+}
+
+// Goal: a request for rows and light brings the light first, then the rows of the frame, bit for bit; the request may
+// be for light alone. Method: with a coarse picture, orders of rows, coherence of frames before and after.
+TEST_CASE("light_map_comes_before_the_rows") {
+  ServerRig rig;
+  ScriptedClient client(&rig);
+  std::uint32_t frame = 0;
+  for (std::uint32_t pitch : {0u, 5u, 0u, 5u, 5u})
+    for (bool coarse : {false, true}) {
+      FrameRequest q = frame_request("seesaw", ++frame, 62, 33);
+      q.settings.indirect = kVirtual, q.seconds = 0.05 * frame;
+      q.light_pitch = static_cast<std::uint8_t>(pitch), q.coarse_first = coarse;
+      q.row_begin = 7, q.row_end = 31;
+      q.run_count = 2, q.runs[0] = {10, 1}, q.runs[1] = {14, 0};
+      client.request(q);
+      if (pitch > 0) CHECK(client.wait_for(MessageType::light_map)->message.light_map.frame == frame);
+      if (coarse) client.wait_for(MessageType::coarse_picture);
+      client.wait_for_rows(24);
+      const std::vector<std::uint8_t> right = rendered_here(q), got = client.picture();
+      const std::ptrdiff_t row_bytes = 62 * pixel_bytes(q.format);
+      CHECK(std::equal(right.begin() + 7 * row_bytes, right.begin() + 31 * row_bytes, got.begin() + 7 * row_bytes));
+    }
+  FrameRequest q = frame_request("seesaw", ++frame, 62, 33);
+  q.light_pitch = 5, q.row_begin = q.row_end = 9;
+  client.request(q);
+  CHECK(client.wait_for(MessageType::light_map)->message.light_map.frame == frame);
+  q.frame = ++frame, q.light_pitch = 0, q.row_end = 20;
+  client.request(q);
+  client.wait_for_rows(11);
+  q.frame = ++frame, q.row_end = 9;
+  client.request(q, MessageType::frame_change);
+  CHECK(client.wait_for(MessageType::error)->message.error.code == WireError::bad_request);
 }
 
 // Goal: a client that takes no message as long as the map's limit is refused, and rows still come.
@@ -247,24 +235,6 @@ TEST_CASE("effect_split_that_does_not_fit_is_by_rows") {
     CHECK(rig.log.size() == (has_indirect ? 0 : 1));
     CHECK(rig.logged("not by effect") == !has_indirect);
   }
-}
-
-// Goal: of both ways to share a frame the client takes the faster, by its measurements; rows keep their pixels. Method:
-// a fast link and server, where rows are faster.
-TEST_CASE("effect_split_automatic_takes_the_faster") {
-  SplitRigOptions o = effect_rig("cornell");
-  o.client.light.split = SplitKind::automatic;
-  SplitRig rig(o);
-  int effect = 0;
-  for (int i = 0; i < 40; ++i) {
-    REQUIRE(begin_frame(&rig.device->renderer, &rig.client, 0).ok);
-    while (!advance_frame(&rig.device->renderer, &rig.client, ~std::uint64_t(0))) {
-    }
-    effect += rig.client.share.by_effect;
-    if (!rig.client.share.by_effect) CHECK(pixels_of(rig.client) == rig.local_pixels(0));
-  }
-  CHECK(effect == int(kTrialFrames));
-  CHECK(predict_effect_ns(rig.client.light.choice) > static_cast<double>(rig.client.light.choice.rows_ns.value));
 }
 
 // Goal: a light map that is not due, or cannot be decoded, ends the connection. Method: a server that deviates in one

@@ -306,3 +306,54 @@ TEST_CASE("cost_model_prices_what_can_have_changed") {
   end_frame(&own.model);  // the server had no rows: it holds none
   CHECK(make_problem(&own.model, SplitWish()).servers[0].render_ns[40] == doctest::Approx(40e5).epsilon(0.01));
 }
+
+// Goal: rows with the device's own light cost what they took, the whole rows' prices stay, and the other way round.
+// Method: a frame of whole rows, then frames of own light that take .6 of it.
+TEST_CASE("cost_model_prices_rows_of_own_light") {
+  OwnModel own(320, 240, 1);
+  CostModel* m = &own.model;
+  m->servers[0].connected = true;
+  observe_overture(m, 0, {1000, 100, 10}, 1, 1000);
+  auto row_ns = [](std::uint32_t r) { return r < 120 ? 1e5 : 3e5; };
+  auto frame = [&](double part, bool by_effect) {
+    for (std::uint32_t r = 0; r < 240; ++r) observe_device_row(m, r, part * row_ns(r));
+    end_frame(m, by_effect);
+  };
+  for (int i = 0; i < 3; ++i) frame(1, false);
+  const SplitProblem whole = make_problem(m, SplitWish());
+  const std::uint64_t whole_ns = whole.device_ns[240];
+  CHECK(whole_ns == doctest::Approx(48e6).epsilon(1e-5));
+  for (int i = 0; i < 4; ++i) {
+    frame(0.6, true);
+    CHECK(m->light.own_part.value == doctest::Approx(0.6f).epsilon(1e-5));
+    CHECK(make_problem(m, SplitWish()).device_ns[240] == doctest::Approx(48e6).epsilon(1e-5));
+  }
+  const SplitProblem lit = make_problem(m, SplitWish(), {0.6, ~0u});
+  CHECK(lit.device_ns[240] == doctest::Approx(28.8e6).epsilon(1e-5));
+  CHECK(lit.device_least_ns == 0);
+  frame(1, false);
+  CHECK(make_problem(m, SplitWish()).device_ns[240] == doctest::Approx(48e6).epsilon(1e-5));
+}
+
+// Goal: the server that maps the light begins its rows later, by its work on the map and the map's bytes; these take
+// the shared link, too; and the device waits for the map.
+TEST_CASE("cost_model_counts_the_map") {
+  OwnModel own(320, 240, 2);
+  CostModel* m = &own.model;
+  for (std::uint32_t i = 0; i < 2; ++i) {
+    m->servers[i].connected = true;
+    observe_overture(m, i, {1000, 100, 10}, 1, 1000);
+  }
+  observe_own_link(m, 5);
+  const SplitProblem without = make_problem(m, SplitWish());
+  const std::uint64_t start = without.servers[1].start_ns, link_start = without.link_start_ns;
+  observe_map(m, 7e6, 2000, 12e6);
+  const SplitProblem unasked = make_problem(m, SplitWish());
+  CHECK(unasked.servers[1].start_ns == start);
+  CHECK(unasked.device_least_ns == 0);
+  const SplitProblem p = make_problem(m, SplitWish(), {0.5, 1});
+  CHECK(p.servers[0].start_ns == start);
+  CHECK(p.servers[1].start_ns == start + 7'000'000 + 2000 * 10);
+  CHECK(p.link_start_ns == link_start + 2000 * 5);
+  CHECK(p.device_least_ns == 12'000'000);
+}

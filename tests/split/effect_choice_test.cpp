@@ -11,12 +11,21 @@ EffectTimes times_of(double prepare, double device, double server, double transf
   return {prepare * 1e6, device * 1e6, server * 1e6, transfer * 1e6, add * 1e6};
 }
 
-// Frames of a world in which either way takes its time; returns how many were by effect.
-int effect_frames(EffectChoice* choice, int frames, double rows_ms, const EffectTimes& times) {
+// What a frame takes in either way, and is predicted to take.
+struct World {
+  double rows_ns = 0, effect_ns = 0, rows_predicted = 0, effect_predicted = 0;
+};
+
+// Frames of a world, of which that by effect is known once it has been tried; returns how many were by effect.
+int effect_frames(EffectChoice* choice, int frames, const World& w) {
   int count = 0;
   for (int i = 0; i < frames; ++i) {
-    const bool by_effect = choose_by_effect(choice);
-    by_effect ? observe_effect_frame(choice, times) : observe_rows_frame(choice, rows_ms * 1e6);
+    const bool knows_effect = is_known(choice->effect_error);
+    const double rows = w.rows_predicted * value_or(choice->rows_error, 1);
+    const double effect = knows_effect ? w.effect_predicted * value_or(choice->effect_error, 1) : 0;
+    const bool by_effect = choose_by_effect(choice, rows, effect);
+    observe_choice(choice, by_effect, by_effect ? w.effect_predicted : w.rows_predicted,
+                   by_effect ? w.effect_ns : w.rows_ns);
     count += by_effect;
   }
   return count;
@@ -26,28 +35,40 @@ int effect_frames(EffectChoice* choice, int frames, double rows_ms, const Effect
 
 // Goal: the server's work and the link overlap with the device's tracing; preparing and adding do not.
 TEST_CASE("effect_time_is_the_longer_of_device_and_server") {
-  EffectChoice choice;
-  CHECK(predict_effect_ns(choice) == 0);
-  observe_effect_frame(&choice, times_of(1, 50, 10, 20, 5));
-  CHECK(predict_effect_ns(choice) == doctest::Approx(56e6));
-  choice = EffectChoice();
-  observe_effect_frame(&choice, times_of(1, 50, 40, 30, 5));
-  CHECK(predict_effect_ns(choice) == doctest::Approx(76e6));
+  EffectModel model;
+  CHECK(predict_effect_ns(model) == 0);
+  observe_effect_times(&model, times_of(1, 50, 10, 20, 5));
+  CHECK(predict_effect_ns(model) == doctest::Approx(56e6));
+  model = EffectModel();
+  observe_effect_times(&model, times_of(1, 50, 40, 30, 5));
+  CHECK(predict_effect_ns(model) == doctest::Approx(76e6));
 }
 
 // Goal: both ways are tried, the faster one is kept, and the other is tried again, rarely, so that a change is noticed.
 TEST_CASE("effect_choice_takes_the_faster") {
-  const EffectTimes times = times_of(1, 50, 10, 20, 5);
   EffectChoice rows_faster, effect_faster;
-  CHECK(effect_frames(&rows_faster, 100, 40, times) == int(kTrialFrames));
+  const World rows_world = {40e6, 56e6, 40e6, 56e6}, effect_world = {90e6, 56e6, 90e6, 56e6};
+  CHECK(effect_frames(&rows_faster, 100, rows_world) == int(kTrialFrames));
   CHECK(!rows_faster.by_effect);
-  CHECK(effect_frames(&effect_faster, 100, 90, times) == 100 - int(kTrialFrames));
+  CHECK(effect_frames(&effect_faster, 100, effect_world) == 100 - int(kTrialFrames));
   CHECK(effect_faster.by_effect);
-  // Rows become faster: the next trial shows it.
-  effect_frames(&effect_faster, int(kRetryFrames) + int(kTrialFrames), 20, times);
-  CHECK(!effect_faster.by_effect);
+  // Rows become faster, as the model says at once.
+  CHECK(effect_frames(&effect_faster, 10, rows_world) == 0);
   // Trials of the slower way are rare.
-  CHECK(effect_frames(&rows_faster, 20 * int(kRetryFrames), 40, times) <= 20 * int(kTrialFrames));
+  CHECK(effect_frames(&rows_faster, 20 * int(kRetryFrames), rows_world) <= 20 * int(kTrialFrames));
+}
+
+// Goal: a way that takes longer than the model says is not taken for it.
+TEST_CASE("effect_choice_learns_how_far_the_model_is_off") {
+  EffectChoice choice;
+  CHECK(effect_frames(&choice, 100, {40e6, 56e6, 40e6, 30e6}) == int(kTrialFrames));
+  CHECK(choice.effect_error.value == doctest::Approx(56.0 / 30));
+  choice = EffectChoice();
+  CHECK(effect_frames(&choice, 100, {80e6, 56e6, 40e6, 56e6}) == 100 - int(kTrialFrames));
+  // What the model does not know teaches nothing.
+  const Smoothed before = choice.rows_error;
+  observe_choice(&choice, false, 0, 1e6);
+  CHECK(choice.rows_error.value == before.value);
 }
 
 // Goal: ways that take about as long do not alternate.
@@ -56,12 +77,10 @@ TEST_CASE("effect_choice_is_steady_where_both_take_as_long") {
   int changes = 0;
   bool before = false;
   for (int i = 0; i < int(kRetryFrames); ++i) {
-    const bool by_effect = choose_by_effect(&choice);
     const double noise = i % 2 ? 1.02 : 0.98;
-    by_effect ? observe_effect_frame(&choice, times_of(0, 50 * noise, 0, 0, 0))
-              : observe_rows_frame(&choice, 50e6 * noise);
-    changes += by_effect != before;
-    before = by_effect;
+    effect_frames(&choice, 1, {50e6 * noise, 50e6 / noise, 50e6, 50e6});
+    changes += choice.by_effect != before;
+    before = choice.by_effect;
   }
   CHECK(changes <= 2);
 }

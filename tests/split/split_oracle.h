@@ -49,6 +49,7 @@ inline std::unique_ptr<GeneratedProblem> random_problem(std::uint32_t row_count,
   p->link_ns = random_table(g.get(), rng, scale / 4 + 1);
   p->device_cost = random_table(g.get(), rng, scale);
   p->device_start_ns = up_to(scale * 4), p->link_start_ns = up_to(scale);
+  if (next_u32(rng) % 4 == 0) p->device_least_ns = up_to(scale * row_count);
   for (std::uint32_t i = 0; i < server_count; ++i) {
     ServerTables* s = &p->servers[i];
     s->usable = next_u32(rng) % 8 != 0;
@@ -81,6 +82,7 @@ inline std::uint64_t judge(const SplitProblem& p, const std::uint32_t* boundary,
   auto sum = [](RowTable table, std::uint32_t begin, std::uint32_t end) { return table[end] - table[begin]; };
   std::uint32_t own = boundary[0], all = p.row_count;
   std::uint64_t time = sum(p.device_ns, 0, own) + sum(p.unpack_ns, own, all) + (own > 0 ? p.device_start_ns : 0);
+  if (own > 0) time = std::max(time, p.device_least_ns);
   if (own < all) time = std::max(time, p.link_start_ns + sum(p.link_ns, own, all));
   *cost = sum(p.device_cost, 0, own);
   for (std::uint32_t i = 0; i < p.server_count; ++i) {

@@ -127,7 +127,7 @@ def test_frames(program, folder, device, scenes):
         frame += 1
         device.frame(cornell, kind, frame=frame, **words)
         check(device.coarse == (device.picture.squares() if "coarse" in words else None), "a coarse picture: %s" % words)
-    # Maps of indirect light instead of rows: ambient light is the same everywhere, that of the scene. Beside the box
+    # Maps of indirect light: ambient light is the same everywhere, that of the scene. Beside the box
     # there is nothing, where the first prediction goes on.
     ambient = [struct.unpack("<I", struct.pack("<f", x))[0] + (1 << 17) >> 18 for x in (.075, .058, .036)]
     for kind, pitch in ((FRAME_REQUEST, 8), (FRAME_CHANGE, 8), (FRAME_REQUEST, 5)):
@@ -136,6 +136,12 @@ def test_frames(program, folder, device, scenes):
         check(len(lights) == -(-48 // pitch) * -(-36 // pitch) and set(lights) == {tuple(ambient), (0, 0, 0)}, "light")
     frame += 1
     check(len(set(device.light(cornell, frame=frame, pitch=4, indirect=4))) > 50, "light of virtual lights")
+    # A map before rows of the frame, which are those of a frame without a map; then a change that keeps it.
+    for kind, words in ((FRAME_REQUEST, dict(coarse=1, first=5, end=30)), (FRAME_REQUEST, dict(order=((20, 1), (16, 0)))), (FRAME_CHANGE, dict())):
+        frame += 1
+        picture = device.frame(cornell, kind, frame=frame, pitch=8, format=RGB888, indirect=2, **words)
+        check(set(device.lights) == {tuple(ambient), (0, 0, 0)}, "light before rows")
+        check(picture.compare(rendered(program, folder, "cornell", "--indirect", "ambient"), (5, 30)), "rows after light")
     frame += 1
     device.frame(cornell, frame=frame)
     # Near-lossless rows, over several frames of a moving camera.
@@ -240,8 +246,8 @@ def test_malformed(server, scenes):
         check(device.closed(waits=data is cases[0]), "malformed bytes end the connection")
         device.socket.close()
     for data, code in ((good, MALFORMED), (b"GET / HTTP/1.1\r\n\r\n", MALFORMED), (hello(3), WRONG_VERSION),
-                       (message(HELLO, b"PRAY\35\0"), WRONG_VERSION), (hello(29, bytes(234)), WRONG_VERSION),
-                       (message(HELLO, b"PRAY\34\0" + bytes(251)), MALFORMED), (hello(28, b"x"), MALFORMED),
+                       (message(HELLO, b"PRAY\36\0"), WRONG_VERSION), (hello(30, bytes(234)), WRONG_VERSION),
+                       (message(HELLO, b"PRAY\35\0" + bytes(251)), MALFORMED), (hello(29, b"x"), MALFORMED),
                        (message(HELLO, b"pray" + bytes(18)), MALFORMED), (message(HELLO, hello()[8:28] + b"\xff\0"), MALFORMED)):
         device = Device(server.address, greets=False)
         check(device.error(data, data.hex()[:80]) == (code, 0), "first message %s" % data[:16])
@@ -252,6 +258,8 @@ def test_malformed(server, scenes):
     check(device.closed(), "a device's error ends the connection")
     device = Device(server.address)
     check(device.error(request(cube, FRAME_CHANGE, frame=5)) == (BAD_REQUEST, 5), "a change of nothing")
+    device.frame(cube, frame=6)
+    check(device.error(request(cube, FRAME_CHANGE, frame=7, first=3, end=3)) == (BAD_REQUEST, 7), "a change to nothing")
 
 
 def test_places(program):

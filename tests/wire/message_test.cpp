@@ -116,7 +116,7 @@ TEST_CASE("message_every_field_travels") {
       {MessageType::frame_change, [](Message* m) { m->frame_request.coarse_first ^= 1; }},
       {MessageType::coarse_picture, [](Message* m) { m->coarse_picture.frame ^= 1; }},
       {MessageType::frame_request,
-       [](Message* m) { m->frame_request.light_pitch = m->frame_request.light_pitch == 7 ? 0 : 7; }},
+       [](Message* m) { m->frame_request.light_pitch = m->frame_request.light_pitch == 7 ? 8 : 7; }},
       {MessageType::light_map, [](Message* m) { m->light_map.frame ^= 1; }},
       {MessageType::light_map, [](Message* m) { m->light_map.light_ps ^= 1u << 31; }},
       {MessageType::light_map, [](Message* m) { m->light_map.price ^= 1; }},
@@ -258,7 +258,7 @@ TEST_CASE("message_values_out_of_range_are_refused") {
       {MessageType::frame_change, 8 + 4, {0, 0, 0, 0, 0, 0, 0xF8, 0x7F}},  // seconds
       {MessageType::frame_change, 8 + 12, nan},                            // eye.x
       {MessageType::frame_change, 8 + 36, {2}},                            // coarse first
-      {MessageType::frame_change, 8 + 37, {5, 0, 5, 0}},                   // no rows
+      {MessageType::frame_change, 8 + 37, {6, 0, 5, 0}},                   // rows that end before they begin
       {MessageType::frame_change, 8 + 39, {0xFF, 0xFF}},                   // rows beyond any picture
       {MessageType::row_chunk, 8 + 4, {0}},                                // rows
       {MessageType::row_chunk, 8 + 2, {0xFF, 0x1F, 2}},                    // rows beyond any picture

@@ -32,7 +32,7 @@ TEST_CASE("row_sequence_passes_every_row_once") {
       before = at.row_end - count;
       pass_rows(q, count, &at);
     }
-    CHECK(runs == run_count(q));
+    CHECK(runs == (q.row_begin < q.row_end ? run_count(q) : 0));
     for (std::uint32_t row = 0; row < q.settings.height; ++row)
       REQUIRE(passed[row] == (row >= q.row_begin && row < q.row_end));
   }

@@ -81,6 +81,7 @@ inline Message sample_message(MessageType type, Rng* rng, const std::vector<std:
   v->bounds = {{-next_float(rng), -1, 0}, {next_float(rng), real() + 100, 1}};
   m.coarse_picture.frame = next_u32(rng), m.coarse_picture.pixels = bytes;
   if (next_u32(rng) % 2) f->light_pitch = static_cast<std::uint8_t>(kLightPitchLow + next_u32(rng) % 15);
+  if (f->light_pitch > 0 && next_u32(rng) % 4 == 0) f->row_end = f->row_begin, f->run_count = 0;
   m.light_map.frame = next_u32(rng), m.light_map.light_ps = next_u32(rng), m.light_map.bytes = bytes;
   m.hello.price = price(), m.row_chunk.price = price(), m.pong.price = price(), m.light_map.price = price();
   return m;

@@ -281,7 +281,7 @@ void begin_client_frame(Client* client, const Renderer& renderer, const FrameSta
   CHECK(!unchanged || client->complete);
   if (!client->complete) {
     cancel_rest(client, true);
-    if (!client->light.by_effect) end_frame(&client->model);
+    end_frame(&client->model, client->share.by_effect);
   }
   CHECK_EQ(renderer.settings.width, client->settings.width);
   CHECK_EQ(renderer.settings.height, client->settings.height);
@@ -328,7 +328,8 @@ void begin_client_frame(Client* client, const Renderer& renderer, const FrameSta
   }
   client->held = !unchanged && any && wants_quiet(*client);
   begin_light_frame(client);
-  if (any && client->options.has_scene && !client->held && !unchanged && !client->light.by_effect) share_rows(client);
+  const bool shares_rows = !client->light.by_effect || client->light.shares_rows;
+  if (any && client->options.has_scene && !client->held && !unchanged && shares_rows) share_rows(client);
   advance_client(client, 0);
 }
 
@@ -363,7 +364,8 @@ void finish_device_rows(Client* client, std::uint32_t row_begin, std::uint32_t r
   CHECK_LT(row_begin, row_end);
   const double count = row_end - row_begin, pixels = static_cast<double>(pixel_count);
   CHECK_LE(pixel_count, std::uint64_t(row_end - row_begin) * client->settings.width);
-  for (std::uint32_t row = row_begin; row < row_end && !client->light.by_effect; ++row)
+  const bool is_modelled = !client->light.by_effect || client->light.shares_rows;
+  for (std::uint32_t row = row_begin; row < row_end && is_modelled; ++row)
     observe_device_row(&client->model, row, static_cast<double>(ns) / count, pixels / (count * client->settings.width));
   client->device_ns += static_cast<double>(ns), client->device_pixels += pixel_count;
   finish_rows(&client->merge, row_begin, row_end);
@@ -397,7 +399,7 @@ void end_client_frame(Client* client) {
   if (!client->options.has_scene) learn_row_times(client);
   if (client->joined) ++client->frames_with_servers;
   cancel_rest(client, false);
-  if (!client->unchanged && !client->light.by_effect) end_frame(&client->model);
+  if (!client->unchanged) end_frame(&client->model, client->share.by_effect);
   end_light_frame(client);
 }
 

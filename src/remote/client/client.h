@@ -32,6 +32,7 @@ struct ClientOptions {
   double coarse_after_ns = 0;                           // frames that take longer begin with a coarse picture; 0: none
   bool device_goes_on = true;                           // goes on into missing rows; false: for comparisons
   Pace pace;                                            // the CPU to emulate
+  double own_light_pixel_ns = 0;                        // as pace.ns_per_pixel, in frames shared by effect; 0: the same
   CodeCost decode;                                      // and what decoding takes there; 0: as here
   LightOptions light;                                   // of frames shared by effect
   const float* row_costs = nullptr;                     // relative row costs on it; see row_costs.h
@@ -137,7 +138,7 @@ struct FrameShare {
   std::uint32_t kept_rows = 0;                  // received, of chunks of which the server traced nothing,
   std::uint64_t kept_bytes = 0;                 // and all bytes of these chunks
   std::uint64_t bytes_in = 0, bytes_out = 0;    // on the wire, all connections
-  bool by_effect = false;                       // the device rendered all rows, and a server the indirect light
+  bool by_effect = false;                       // a server rendered the indirect light of the device's rows,
   bool has_light = false;                       // which they have,
   std::uint32_t light_age = 0;                  // of so many frames before,
   std::uint64_t light_bytes = 0;                // of maps that came during the frame
@@ -186,6 +187,7 @@ struct Client {
   std::uint64_t coarse_ns = 0;  // so long after the frame's begin
   bool held = false;            // requests wait until a link is measured
   std::uint64_t begin_ns = 0, waited_ns = 0, looked_ns = 0;
+  double alone_ns = 0;           // predicted for the device without servers, as it renders its rows of the frame
   bool prepared = false;         // the device can trace its pixels,
   std::uint64_t prepare_ns = 0;  // which took so long
   mutable platform::LinkClock clock;

@@ -29,8 +29,10 @@ std::uint64_t take_time_at(Client* client, const Pace& pace, std::uint64_t pixel
 // The same for pixels of these rows, by their relative cost.
 std::uint64_t take_row_time(Client* client, std::uint32_t row_begin, std::uint32_t row_end, std::uint64_t pixel_count,
                             std::uint64_t begin_ns) {
-  return take_time_at(client, pace_of_rows(client->options.pace, client->options.row_costs, row_begin, row_end),
-                      pixel_count, begin_ns);
+  const ClientOptions& o = client->options;
+  Pace pace = pace_of_rows(o.pace, o.row_costs, row_begin, row_end);
+  if (client->light.by_effect && o.own_light_pixel_ns > 0) pace.ns_per_pixel = o.own_light_pixel_ns;
+  return take_time_at(client, pace, pixel_count, begin_ns);
 }
 
 // The device's rows as spans; polls the servers while there are none.
@@ -40,6 +42,7 @@ struct ClientRows {
   std::uint32_t row_begin = 0, row_end = 0;   // of the batch, or the row rendered in parts
   std::uint32_t column_end = 0;               // of the part
   std::uint64_t pixel_count = 0;              // to trace, of the batch
+  bool lights = false;                        // light was added to rows since the servers were polled
   std::atomic<bool>* coarse_comes = nullptr;  // is set when a coarse picture has come
 };
 
@@ -88,7 +91,10 @@ void next_rows(void* context, SpanBatch* batch) {
   if (row->in_parts && client->merge.rows[row->row].state != RowState::taken) row->in_parts = false;
   if (row->in_parts) return next_part(s, batch);
   if (has_all_rows(*client)) return;
-  if (!has_device_rows(*client)) return;
+  if (!has_device_rows(*client)) {
+    s->lights = light_rows(s->renderer, client);
+    return;
+  }
   if (!client->prepared) prepare_device(s->renderer, client);
   double pixel_ns = device_pixel_ns(*client), row_ns = pixel_ns * renderer.settings.width;
   bool is_long = row_ns == 0 || row_ns > work_ns_max(*client);
@@ -131,11 +137,12 @@ bool finish_batch(const ClientRows& s, const SpanBatch& batch) {
 
 // Merges what has come.
 bool merge_rows(void* context, const SpanBatch& batch) {
-  const ClientRows& s = *static_cast<ClientRows*>(context);
+  ClientRows& s = *static_cast<ClientRows*>(context);
   Client* client = s.client;
-  bool busy = batch.span_count > 0;
-  if ((!busy || finish_batch(s, batch)) && has_all_rows(*client) && is_lit(s.renderer, client) &&
-      is_verified(s.renderer, client)) {
+  const bool is_tracing = batch.span_count > 0;
+  const bool has_all = (!is_tracing || finish_batch(s, batch)) && has_all_rows(*client);
+  if (has_all) s.lights = light_rows(s.renderer, client) || s.lights;
+  if (has_all && is_lit(*client) && is_verified(s.renderer, client)) {
     if (client->options.has_scene) {
       end_shared_rows(s.renderer);
       const Coherence& c = s.renderer->coherence;
@@ -145,7 +152,8 @@ bool merge_rows(void* context, const SpanBatch& batch) {
     return true;
   }
   const bool was_shown = client->coarse_shown;
-  advance_client(client, busy ? 0 : kWaitNs);
+  advance_client(client, is_tracing || s.lights ? 0 : kWaitNs);
+  s.lights = false;
   if (client->coarse_shown && !was_shown) *s.coarse_comes = true;
   return false;
 }
@@ -168,8 +176,9 @@ Status prepare_rows(Renderer* renderer, Client* client, FrameStart* start) {
                      renderer->exposure == client->request.exposure;
   search_shared_rows(renderer, ~0u);
   const float width = static_cast<float>(renderer->settings.width);
+  const float own_part = client->light.by_effect ? static_cast<float>(own_light_part(*client)) : 1;
   for (std::uint32_t row = 0; row < renderer->settings.height; ++row)
-    client->model.rows[row].device_part = static_cast<float>(count_pixels(*renderer, row)) / width;
+    client->model.rows[row].device_part = own_part * static_cast<float>(count_pixels(*renderer, row)) / width;
   wait_for_pace(&renderer->pace, 0, posed_ns);
   start->prepared = true;
   start->prepare_ns = client_now_ns(*client) - begin_ns;

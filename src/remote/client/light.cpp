@@ -39,35 +39,54 @@ bool is_one_joining(const Client& client) {
   });
 }
 
+// Asks for nothing but the light.
 void request_light(Client* client, RemoteServer* server) {
-  ClientLight* l = &client->light;
   Message message;
   message.frame_request = client->request;
   FrameRequest* q = &message.frame_request;
-  q->light_pitch = static_cast<std::uint8_t>(l->grid.pitch);
-  q->row_begin = 0, q->row_end = static_cast<std::uint16_t>(client->settings.height);
+  q->row_begin = q->row_end = 0;
   q->run_count = 0, q->coarse_first = false;
-  const bool like_the_last = server->asked.frame > 0 && is_change(*q, server->asked);
-  message.type = like_the_last ? MessageType::frame_change : MessageType::frame_request;
+  want_light_with(client, server, q);
   server->late_rows += server->due_rows;
   server->due_rows = 0;
-  ++server->light_due;
-  server->asked = l->asked = *q;
-  l->asked_server = index_of(*client, server), l->last_asked = q->frame;
-  l->asked_ns = client_now_ns(*client);
-  l->has_surfaces = l->has_come = false;
-  if (!send_message(&server->messages, message)) return lose_server(client, server, "it stopped reading");
-  if (!server->unanswered) server->timer = platform::link_timer(l->asked_ns, silence_limit_ns(*client, *server));
-  server->unanswered = true;
-  flush_server(client, server);
+  send_request(client, server, &message);
 }
 
-// Takes the surfaces that the map of this frame shows, once the frame is traced, and the map, once it has come.
+bool is_own(const Client& client, std::uint32_t row) { return client.merge.rows[row].state == RowState::device; }
+
+// The device's next rows from `begin` on that have their light yet to come, at most `count_max`, after those of
+// servers. While the device may still take rows, those before the first that it may take.
+RowRange own_rows(const Client& client, std::uint32_t begin, std::uint32_t count_max) {
+  const std::uint32_t limit = has_all_rows(client) ? client.settings.height : client.merge.next_row;
+  while (begin < limit && !is_own(client, begin)) ++begin;
+  std::uint32_t end = begin;
+  while (end < limit && end - begin < count_max && is_own(client, end)) ++end;
+  return {begin, end};
+}
+
+double mean_device_part(const Client& client) {
+  double sum = 0;
+  for (const RowModel& row : client.model.rows) sum += static_cast<double>(row.device_part);
+  return sum / client.settings.height;
+}
+
+// Of rows that the device has rendered.
+void observe_light_added(Client* client, std::uint32_t row_begin, std::uint32_t row_end, double ns) {
+  if (!client->light.shares_rows) return;
+  const auto each_ns = static_cast<float>(ns / (row_end - row_begin));
+  for (std::uint32_t row = row_begin; row < row_end; ++row)
+    if (client->model.rows[row].device_ns_seen > 0) client->model.rows[row].device_ns_seen += each_ns;
+}
+
+// Takes the surfaces that the map of this frame shows, once the device's rows are traced, and the map, once it has
+// come.
 void take_map(Renderer* renderer, Client* client) {
   ClientLight* l = &client->light;
   const std::uint32_t next = 1 - l->newest;
   if (l->asked.frame > 0 && l->asked.frame == client->request.frame && !l->has_surfaces) {
-    take_mapped_surfaces(renderer, l->first_hits.data, l->grid, l->surfaces[next].data);
+    std::uint32_t row_end = 0;
+    while (row_end < client->settings.height && is_own(*client, row_end)) ++row_end;
+    take_mapped_surfaces(renderer, l->first_hits.data, row_end, l->grid, l->surfaces[next].data);
     l->asked_camera = renderer->frame.camera;
     l->has_surfaces = true;
   }
@@ -109,6 +128,47 @@ void log_unfit(Client* client, const char* reason) {
   client->options.log(client->options.log_context, line);
 }
 
+// Whether the frame under way is to have a map of its own.
+bool wants_map(const Client& client) {
+  const ClientLight& l = client.light;
+  if (!l.by_effect || l.asked.frame > 0) return false;
+  const std::uint32_t frame = client.request.frame;
+  if (l.last_asked == frame) return false;  // its server was lost
+  const bool has_map = l.map_request.frame > 0;
+  if (has_map && same_view(l.map_request, client.request)) return false;
+  return !has_map || l.rests || frame - l.last_asked >= client.options.light.every;
+}
+
+double predict_ns(Client* client, const RowsOfDevice& rows, const Smoothed& error) {
+  const SplitProblem problem = make_problem(&client->model, client->options.wish, rows);
+  return static_cast<double>(find_split(problem, &client->workspace).time_ns) * value_or(error, 1);
+}
+
+// What frames shared by rows and by effect would take, by the cost model.
+void predict_ways(Client* client) {
+  ClientLight* l = &client->light;
+  // Frames by effect are traced whole; what the next by rows needs is what the last of them did.
+  RowsOfDevice rows;
+  if (l->choice.by_effect) rows.part = l->rows_part;
+  l->rows_ns = predict_ns(client, rows, l->choice.rows_error);
+  l->effect_ns = 0;
+  const RemoteServer* mapper = best_server(client);
+  if (!mapper || !is_known(client->model.light.own_part) || !is_known(client->model.light.arrival_ns)) return;
+  l->effect_ns = predict_ns(client, {own_light_part(*client), index_of(*client, mapper)}, l->choice.effect_error);
+}
+
+// Both ways in turn, or the one that is predicted to be faster.
+bool is_effect_wanted(Client* client) {
+  ClientLight* l = &client->light;
+  // Servers come into use by rows.
+  const bool probes = std::any_of(client->servers, client->servers + client->server_count, [](const RemoteServer& s) {
+    return s.phase == ServerPhase::measuring || s.phase == ServerPhase::probing;
+  });
+  if (probes || !best_server(client)) return false;
+  predict_ways(client);
+  return choose_by_effect(&l->choice, l->rows_ns, l->effect_ns);
+}
+
 }  // namespace
 
 std::size_t light_need(const Settings& settings, const LightOptions& o) {
@@ -139,10 +199,9 @@ void make_light(const LightOptions& o, const Settings& settings, Arena* arena, C
 Status choose_split(Renderer* renderer, Client* client) {
   ClientLight* l = &client->light;
   const LightOptions& o = client->options.light;
-  l->by_effect = false;
+  l->by_effect = l->shares_rows = false;
   if (o.split == SplitKind::rows || !client->options.has_scene) return success();
-  const bool any = best_server(client) != nullptr;
-  bool wanted = o.split == SplitKind::effect || (any && choose_by_effect(&l->choice));
+  bool wanted = o.split == SplitKind::effect || is_effect_wanted(client);
   if (wanted) {
     RETURN_IF_ERROR(set_indirect(renderer, o.indirect));
     const char* reason = unfit_because(*renderer);
@@ -155,6 +214,7 @@ Status choose_split(Renderer* renderer, Client* client) {
   }
   if (!wanted) RETURN_IF_ERROR(set_indirect(renderer, o.indirect));
   l->by_effect = wanted;
+  l->shares_rows = wanted && o.split == SplitKind::automatic;
   return success();
 }
 
@@ -168,18 +228,33 @@ void begin_light_frame(Client* client) {
   l->traced_ns = 0, l->rows_lit = 0, l->is_done = false;
   l->times = EffectTimes();
   client->share.by_effect = l->by_effect;
-  ask_for_light(client);
+  if (!l->shares_rows) ask_for_light(client);
+}
+
+bool want_light_with(Client* client, RemoteServer* server, FrameRequest* q) {
+  ClientLight* l = &client->light;
+  if (!wants_map(*client) || server != best_server(client)) return false;
+  q->light_pitch = static_cast<std::uint8_t>(l->grid.pitch);
+  ++server->light_due;
+  l->asked = *q;
+  l->asked_server = index_of(*client, server), l->last_asked = q->frame;
+  l->asked_ns = client_now_ns(*client);
+  l->has_surfaces = l->has_come = false;
+  return true;
+}
+
+double own_light_part(const Client& client) { return value_or(client.model.light.own_part, 1); }
+
+std::uint32_t mapper_of_frame(Client* client) {
+  const RemoteServer* server = wants_map(*client) ? best_server(client) : nullptr;
+  return server ? index_of(*client, server) : kNone;
 }
 
 void ask_for_light(Client* client) {
-  ClientLight* l = &client->light;
-  if (!l->by_effect || client->complete || l->rows_lit > 0 || l->is_done || l->asked.frame > 0) return;
-  const std::uint32_t frame = client->request.frame;
-  if (l->last_asked == frame) return;  // its server was lost
-  const bool has_map = l->map_request.frame > 0;
-  if (has_map && same_view(l->map_request, client->request)) return;
-  if (has_map && !l->rests && frame - l->last_asked < client->options.light.every) return;
-  if (RemoteServer* server = best_server(client)) request_light(client, server);
+  const ClientLight& l = client->light;
+  if (client->complete || l.rows_lit > 0 || l.is_done || !wants_map(*client)) return;
+  RemoteServer* server = best_server(client);
+  if (server && !server->frame.open) request_light(client, server);
 }
 
 void take_light(Client* client, RemoteServer* server, LightMapMessage message) {
@@ -201,8 +276,8 @@ void take_light(Client* client, RemoteServer* server, LightMapMessage message) {
   const double took_ns = static_cast<double>(client_now_ns(*client) - l->asked_ns);
   l->times.server_ns = 1e-3 * message.light_ps * light_count(l->grid) * price_ratio(message.price);
   l->times.transfer_ns = std::max(0.0, took_ns - l->times.server_ns);
-  if (server->phase == ServerPhase::probing && client->options.light.split == SplitKind::effect)
-    server_is_ready(client, server);
+  observe_map(&client->model, l->times.server_ns, bytes, took_ns);
+  if (server->phase == ServerPhase::probing && !l->shares_rows) server_is_ready(client, server);
   if (server->useful_ns == 0 || server->told) server_is_useful(client, server);
 }
 
@@ -211,10 +286,10 @@ void forget_light_of(Client* client, std::uint32_t server) {
   if (l->asked_server == server) l->asked.frame = 0;  // its map, if it still comes, is of no use
 }
 
-bool is_lit(Renderer* renderer, Client* client) {
+bool light_rows(Renderer* renderer, Client* client) {
   constexpr std::uint32_t kRowsAtOnce = 16;  // chosen: a fifteenth of a handheld's screen between two looks
   ClientLight* l = &client->light;
-  if (!l->by_effect || l->is_done) return true;
+  if (!l->by_effect || l->is_done) return false;
   const std::uint64_t now = client_now_ns(*client);
   if (l->traced_ns == 0) ask_for_light(client), l->traced_ns = now;
   take_map(renderer, client);
@@ -222,31 +297,45 @@ bool is_lit(Renderer* renderer, Client* client) {
   const bool is_due = l->rows_lit == 0 && (l->asked.frame == client->request.frame || is_one_joining(*client));
   const std::uint64_t wait_ns = o.wait_ns > 0 ? o.wait_ns : static_cast<std::uint64_t>(client->device_ns);
   if (is_due && now - l->traced_ns < wait_ns) return false;
-  const std::uint32_t height = client->settings.height;
-  if (l->map_request.frame > 0) {
-    const std::uint32_t end = std::min(height, l->rows_lit + kRowsAtOnce);
-    add_mapped_light(renderer, l->first_hits.data, l->map, l->rows_lit, end);
-    pack_device_rows(*renderer, client, l->rows_lit, end);
-    mark_dirty(client, l->rows_lit, end);
-    l->times.add_ns += static_cast<double>(take_time(client, 0, now));
-    l->rows_lit = end;
-    client->share.has_light = true;
-    client->share.light_age = client->request.frame - l->map_request.frame;
+  const bool has_all = has_all_rows(*client);
+  if (l->map_request.frame == 0) {
+    l->is_done = has_all;
+    return false;
   }
-  return l->is_done = l->map_request.frame == 0 || l->rows_lit == height;
+  const RowRange rows = own_rows(*client, l->rows_lit, kRowsAtOnce);
+  l->rows_lit = rows.end;
+  if (rows.begin < rows.end) {
+    add_mapped_light(renderer, l->first_hits.data, l->map, rows.begin, rows.end);
+    pack_device_rows(*renderer, client, rows.begin, rows.end);
+    mark_dirty(client, rows.begin, rows.end);
+    const std::uint64_t took_ns = take_time(client, 0, now);
+    observe_light_added(client, rows.begin, rows.end, static_cast<double>(took_ns));
+    l->times.add_ns += static_cast<double>(took_ns);
+  }
+  client->share.has_light = true;
+  client->share.light_age = client->request.frame - l->map_request.frame;
+  l->is_done = has_all && l->rows_lit == client->settings.height;
+  return rows.begin < rows.end;
 }
+
+bool is_lit(const Client& client) { return !client.light.by_effect || client.light.is_done; }
 
 void end_light_frame(Client* client) {
   ClientLight* l = &client->light;
   if (l->grid.pitch == 0) return;
+  const FrameShare& share = client->share;
+  const bool chooses = client->options.light.split == SplitKind::automatic;
+  if (chooses && (client->joined || l->by_effect) && !client->unchanged)
+    observe_choice(&l->choice, l->by_effect, client->frames_with_servers > 1 ? share.predicted_ns : 0,
+                   share.measured_ns);
   if (!l->by_effect) {
-    if (client->joined) observe_rows_frame(&l->choice, client->share.measured_ns);
+    l->rows_part = mean_device_part(*client);
     return;
   }
   l->times.prepare_ns = static_cast<double>(client->prepare_ns);
   l->times.device_ns = client->device_ns;
-  observe_effect_frame(&l->choice, l->times);
-  client->share.predicted_ns = predict_effect_ns(l->choice);
+  observe_effect_times(&l->model, l->times);
+  if (!l->shares_rows) client->share.predicted_ns = l->effect_ns = predict_effect_ns(l->model);
 }
 
 }  // namespace pocketray

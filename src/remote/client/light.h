@@ -1,5 +1,6 @@
-// Frames shared by effect: the device renders all rows with what indirect light it has itself (ambient light, or none),
-// a server renders the frame's indirect light at fewer pixels, and the device adds the difference (engine/light_map.h).
+// Frames shared by effect: the device renders rows with what indirect light it has itself (ambient light, or none), a
+// server renders the frame's indirect light at fewer pixels, and the device adds the difference (engine/light_map.h).
+// The device has all rows, or servers have the rest of them, whole: SplitKind::automatic takes what is fastest.
 // A map that is late is used for the frames after, where its camera saw their surfaces; without any, the device's own
 // light stays.
 #pragma once
@@ -36,11 +37,15 @@ struct ClientLight {
   // The frame under way.
   bool by_effect = false;
   bool rests = false;           // it shows what the last frame showed
-  std::uint64_t traced_ns = 0;  // when all of its rows were traced; 0: not yet
-  std::uint32_t rows_lit = 0;   // that have the map's light,
+  bool shares_rows = false;     // servers have rows of it, too
+  std::uint64_t traced_ns = 0;  // when all of the device's rows were traced; 0: not yet
+  std::uint32_t rows_lit = 0;   // the device's above this one have the map's light,
   bool is_done = false;         // as all have that get any
   EffectTimes times;
+  EffectModel model;
   EffectChoice choice;
+  double rows_ns = 0, effect_ns = 0;  // that a frame is expected to take in either way; 0: unknown
+  double rows_part = 1;         // of the pixels, what the device had to trace of its rows when it last shared by rows
   FrameRequest last;            // the last frame's
   const char* unfit = nullptr;  // why frames cannot be shared so, as logged
 };

@@ -103,7 +103,7 @@ bool is_worth_waiting(const Client& client) {
   if (elapsed + row <= due && elapsed + row + decoding_left_ns(client) <= due) return false;
   bool any_guessed =
       std::any_of(client.model.rows.begin(), client.model.rows.end(), [](const RowModel& r) { return r.guessed; });
-  double latest = kLateFactor * client.share.local_ns;
+  double latest = kLateFactor * client.alone_ns;
   return elapsed + preparing_left_ns(client) + rows_left_ns(client) <= latest &&
          (any_guessed || time_to_spare(client, kCertainPart) > 0);
 }

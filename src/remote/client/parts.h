@@ -60,6 +60,8 @@ void ask_for_rows(Client* client, RemoteServer* server, std::uint32_t row_begin,
 // The same, including finished rows.
 void request_rows(Client* client, RemoteServer* server, std::uint32_t row_begin, std::uint32_t row_end,
                   const SplitProblem* problem = nullptr);
+// Sends a request as it is, as a change of the last one if it is one.
+void send_request(Client* client, RemoteServer* server, Message* message);
 // Gives servers that became ready during the frame a share of the rest, once no server is worth waiting for.
 void let_join(Client* client);
 // Measures the link by the frame's rows. Rows come as fast as the slower of servers and link: if the servers were
@@ -137,13 +139,22 @@ void show_coarse(Client* client, const CoarsePicture& coarse);
 // Call when a frame begins, after choose_split(), and when it ends.
 void begin_light_frame(Client* client);
 void end_light_frame(Client* client);
-// Asks a server for the light of the frame under way if it is shared by effect, wants a map and has asked for none.
+// Of the time of the device's rows, what they take with its own light and the map's.
+double own_light_part(const Client& client);
+// Index of the server that is asked for the light of the frame under way with its next request; kNone: none is.
+std::uint32_t mapper_of_frame(Client* client);
+// Makes a request to that server one for the light, too. True if it is.
+bool want_light_with(Client* client, RemoteServer* server, FrameRequest* request);
+// Asks that server, if it has no rows to send.
 void ask_for_light(Client* client);
 void take_light(Client* client, RemoteServer* server, LightMapMessage message);
 // The server will not send the light that it was asked for, or too late.
 void forget_light_of(Client* client, std::uint32_t server);
-// Adds light to a frame that has all its rows. True: it has what it gets; false: some is due, or to be added.
-bool is_lit(Renderer* renderer, Client* client);
+// Adds light to the next rows that the device has traced, once it has no more to trace or the frame has all its rows.
+// False: there are none, or their light is still to come.
+bool light_rows(Renderer* renderer, Client* client);
+// Whether a frame that has all its rows has what light it gets; false: some is due, or to be added.
+bool is_lit(const Client& client);
 
 // ---- client.cpp
 

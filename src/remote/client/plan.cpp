@@ -137,22 +137,27 @@ void request_rows(Client* client, RemoteServer* server, std::uint32_t row_begin,
   message.frame_request.chunk_rows = static_cast<std::uint16_t>(std::min(chunk_rows, client->settings.height));
   message.frame_request.coding =
       row_coding(server->ns_per_byte, code_threshold(*client, *server), client->options.near_lossless);
-  bool like_the_last = server->asked.frame > 0 && is_change(message.frame_request, server->asked);
-  message.type = like_the_last ? MessageType::frame_change : MessageType::frame_request;
   server->late_rows += server->due_rows;
   forget_light_of(client, index);
+  want_light_with(client, server, &message.frame_request);
   if (message.frame_request.coarse_first) ++server->coarse_due, client->coarse_asked = true;
   client->request.coarse_first = false;
-  server->asked = message.frame_request;
-  server->due = first_rows(server->asked), server->due_rows = row_end - row_begin;
-  if (!send_message(&server->messages, message)) return lose_server(client, server, "it stopped reading");
   std::uint64_t bytes = server->frame.bytes, row_bytes = server->frame.row_bytes;
   server->frame = ServerFrame();
   server->frame.row_begin = row_begin, server->frame.row_end = row_end;
   server->frame.asked_ns = client_now_ns(*client), server->frame.bytes = bytes, server->frame.row_bytes = row_bytes;
   server->frame.open = true;
+  server->due = first_rows(message.frame_request), server->due_rows = row_end - row_begin;
+  send_request(client, server, &message);
+}
+
+void send_request(Client* client, RemoteServer* server, Message* message) {
+  const bool like_the_last = server->asked.frame > 0 && is_change(message->frame_request, server->asked);
+  message->type = like_the_last ? MessageType::frame_change : MessageType::frame_request;
+  server->asked = message->frame_request;
+  if (!send_message(&server->messages, *message)) return lose_server(client, server, "it stopped reading");
   if (!server->unanswered)
-    server->timer = platform::link_timer(server->frame.asked_ns, silence_limit_ns(*client, *server));
+    server->timer = platform::link_timer(client_now_ns(*client), silence_limit_ns(*client, *server));
   server->unanswered = true;
   flush_server(client, server);
 }
@@ -169,7 +174,10 @@ double device_pixel_ns(const Client& client) {
 
 void share_rows(Client* client) {
   CHECK(client->options.has_scene && !client->complete);
-  SplitProblem problem = make_problem(&client->model, client->options.wish);
+  const bool by_effect = client->light.by_effect;
+  RowsOfDevice own;
+  if (by_effect) own = {own_light_part(*client), mapper_of_frame(client)};
+  SplitProblem problem = make_problem(&client->model, client->options.wish, own);
   // Times count from the begin of the frame: the device can render once it is prepared, servers start when asked.
   const std::uint64_t elapsed_ns = client_elapsed_ns(*client);
   auto from_now = [&](std::uint64_t* start_ns) { *start_ns = std::min(kRowTableMax, *start_ns + elapsed_ns); };
@@ -192,7 +200,10 @@ void share_rows(Client* client) {
   alone.server_count = client->server_count;
   for (std::uint32_t& boundary : alone.boundary) boundary = problem.row_count;
   predict_split(problem, &alone);
-  client->share.local_ns = static_cast<double>(alone.time_ns);
+  client->alone_ns = client->share.local_ns = static_cast<double>(alone.time_ns);
+  // To users, what the device would take for all of the light.
+  if (by_effect)
+    client->share.local_ns += static_cast<double>(problem.device_ns[problem.row_count]) * (1 / own.part - 1);
   auto rows_of = [&](std::uint32_t i) { return client->split.boundary[i + 1] - client->split.boundary[i]; };
   std::uint32_t largest = 0;
   for (std::uint32_t i = 1; i < client->server_count; ++i)
@@ -206,18 +217,20 @@ void share_rows(Client* client) {
     client->request.coarse_first = false;
   }
   client->joined = true;
+  if (by_effect) ask_for_light(client);
 }
 
 void let_join(Client* client) {
   if (!client->options.has_scene) return ask_idle_servers(client);
   if (client->complete || client->unchanged) return;
-  if (client->light.by_effect) return ask_for_light(client);
+  const bool by_effect = client->light.by_effect;
+  if (by_effect && !client->light.shares_rows) return ask_for_light(client);
   bool any = false;
   for (std::uint32_t i = 0; i < client->server_count; ++i) {
-    if (client->servers[i].phase == ServerPhase::probing) finish_probe(client, &client->servers[i]);
+    if (!by_effect && client->servers[i].phase == ServerPhase::probing) finish_probe(client, &client->servers[i]);
     any = any || client->servers[i].phase == ServerPhase::ready;
   }
-  probe_servers(client);
+  if (!by_effect) probe_servers(client);
   if (client->joined || !any) return;
   if (client->held ? wants_quiet(*client)
                    : !is_settled(*client) && client->merge.next_row < client->settings.height / 4)

@@ -259,7 +259,7 @@ void add_server_lines(const ConnectedServers& s, HudText* text) {
   const FrameShare& f = s.last;
   for (std::uint32_t i = 0; i < client.server_count; ++i) {
     const RemoteServer& server = client.servers[i];
-    if (f.by_effect && server.phase == ServerPhase::ready)
+    if (f.by_effect && server.phase == ServerPhase::ready && f.row_end[i] == 0)
       add_hud_line(text, "%s light  %.1f kB", server.address.text, static_cast<double>(f.server_bytes[i]) * 1e-3);
     else if (server.phase == ServerPhase::ready && f.row_end[i] > 0)
       add_hud_line(text, "%s rows %u-%u, gave %u  %.1f kB", server.address.text, f.row_begin[i], f.row_end[i] - 1,
@@ -312,11 +312,11 @@ ServersTotals totals_of(const Servers& servers) {
   const ConnectedServers& s = connected(servers);
   ServersTotals totals = s.totals;
   totals.checks_rows = s.is_thin;
-  const EffectChoice& c = s.client.light.choice;
-  auto value = [](const Smoothed& smoothed) { return static_cast<double>(smoothed.value); };
-  totals.effect_ns = predict_effect_ns(c), totals.rows_ns = value(c.rows_ns);
-  totals.effect_times = {value(c.prepare_ns), value(c.device_ns), value(c.server_ns), value(c.transfer_ns),
-                         value(c.add_ns)};
+  const ClientLight& light = s.client.light;
+  const EffectModel& m = light.model;
+  totals.effect_ns = light.effect_ns, totals.rows_ns = light.rows_ns;
+  totals.effect_times = {value_or(m.prepare_ns, 0), value_or(m.device_ns, 0), value_or(m.server_ns, 0),
+                         value_or(m.transfer_ns, 0), value_or(m.add_ns, 0)};
   totals.caught_row = 1;
   for (const RemoteServer& server : s.client.servers)
     if (server.checks.rows > 0 && !server.lied)

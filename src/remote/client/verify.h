@@ -3,7 +3,8 @@
 // for good with one log line, and its rows of the frame are rendered again. Wrong pixels that are not checked are
 // shown: spot_check.h gives the probability of detection. A device without the scene compares rows of one server with
 // the same rows of another and asks a third if they differ. With only two it cannot tell which is right: it logs that
-// once and the picture counts as disputed.
+// once and the picture counts as disputed. Frames shared by effect are not checked, since the device has only its own
+// indirect light there; frames by rows come at least every kRetryFrames.
 #pragma once
 #include "base/arena.h"
 #include "base/span.h"

@@ -136,12 +136,8 @@ Status aim(Session* session) {
   }
   renderer->exposure = job->request.exposure > 0 ? job->request.exposure : session->own_exposure;
   RETURN_IF_ERROR(prepare_frame(renderer, job->request.seconds));
-  if (job->request.light_pitch > 0) {
-    job->stage = JobStage::light;
-    return success();
-  }
-  begin_shared_rows(renderer, job->request.row_begin, job->request.row_end);
-  job->stage = JobStage::search;
+  job->stage = JobStage::light;
+  if (job->request.light_pitch == 0) begin_job_rows(session);
   return success();
 }
 
@@ -169,6 +165,12 @@ Status probe(Session* session, std::uint64_t slice_ns, Slice* slice) {
 
 }  // namespace
 
+void begin_job_rows(Session* session) {
+  const FrameRequest& request = session->job.request;
+  begin_shared_rows(&session->renderer, request.row_begin, request.row_end);
+  session->job.stage = JobStage::search;
+}
+
 Status step_job(Session* session, const JobTools& tools, std::uint64_t slice_ns, Slice* slice, WireError* code) {
   CHECK(has_job(*session));
   *slice = {};
@@ -177,8 +179,7 @@ Status step_job(Session* session, const JobTools& tools, std::uint64_t slice_ns,
     case JobStage::plan:
       return plan(session, tools, code);
     case JobStage::aim:
-      if (tools.helpers && !session->job.is_view_query && session->job.request.light_pitch == 0)
-        tools.helpers->begin(tools.helpers->context, session);
+      if (tools.helpers && has_rows(session->job.traced)) tools.helpers->begin(tools.helpers->context, session);
       slice->is_preparation = !session->job.is_view_query;
       return aim(session);
     case JobStage::own_exposure:

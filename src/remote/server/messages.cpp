@@ -83,7 +83,7 @@ void take_request(Server* server, Session* session, const FrameRequest& request)
   const StoredScene* scene = find_scene(*server->store, request.scene);
   if (!scene) return refuse(server, session, WireError::unknown_scene, request.frame, "unknown scene");
   begin_job(session, scene);
-  CHECK(request.row_begin < request.row_end && request.row_end <= settings.height);
+  CHECK(asks_for_something(request) && request.row_begin <= request.row_end && request.row_end <= settings.height);
   session->job.request = request;
   session->job.traced = session->job.sent = first_rows(request);
 }
@@ -93,6 +93,8 @@ void take_frame_change(Server* server, Session* session, const FrameRequest& cha
     return refuse(server, session, WireError::bad_request, change.frame, "it changes a frame that was not requested");
   FrameRequest request = session->request;
   take_change(change, &request);
+  if (!asks_for_something(request))
+    return refuse(server, session, WireError::bad_request, change.frame, "it asks for neither rows nor light");
   take_request(server, session, request);
 }
 

@@ -43,7 +43,7 @@ enum class JobStage : std::uint8_t {
   view_exposure,  // of a view_query, answered afterwards
   coarse,         // the coarse picture, if one is wanted
   rows,
-  light,  // a map of indirect light instead of rows
+  light,  // a map of indirect light, before any rows
 };
 
 // The frame that a client waits for. Its rows are traced and sent in the request's order; of the next row to trace, the
@@ -161,6 +161,8 @@ bool can_work(const Session& session);
 // Advances a job by a slice, of about `slice_ns` if it consists of pixels. Fails if the request cannot be met; *code
 // says why.
 Status step_job(Session* session, const JobTools& tools, std::uint64_t slice_ns, Slice* slice, WireError* code);
+// Enters the stages of the job's rows.
+void begin_job_rows(Session* session);
 // Answers a view_query, which ends the job.
 Status answer_view_query(Session* session);
 // Number of pixels that one thread traces in about `slice_ns`, at `known_ns` each (0: unknown). Bounded so that it
@@ -183,7 +185,7 @@ inline PixelFormat pack_format(WireFormat format) { return format == WireFormat:
 std::uint32_t next_ranges(const FrameJob& job, std::uint32_t row_count, RowRange* ranges);
 // Whether a message can hold the light map that the job asks for.
 Status check_light_map(const Session& session);
-// Traces the next lights of it, for about `slice_ns`; accounts for them; sends the map, which ends the job.
+// Traces the next lights of it, for about `slice_ns`; accounts for them; sends the map, which ends a job without rows.
 Slice trace_light(Session* session, std::uint64_t slice_ns);
 void end_light_slice(Session* session, const Slice& slice, std::uint64_t took_ns);
 void send_light(Session* session);
