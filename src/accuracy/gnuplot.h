@@ -1,5 +1,6 @@
 // Quoting for gnuplot and the shell. Header only, so that programs without the accuracy library can use it.
 #pragma once
+#include <algorithm>
 #include <string>
 
 namespace pocketray {
@@ -20,6 +21,22 @@ inline std::string gnuplot_string(const std::string& text) {
   for (char& c : line)
     if (static_cast<unsigned char>(c) < ' ') c = ' ';
   return quoted(line, "''");
+}
+
+// A gnuplot string in lines of at most so many bytes, as far as the text has spaces.
+inline std::string gnuplot_lines(const std::string& text, std::size_t line_bytes) {
+  std::string lines;
+  for (std::size_t begin = 0; begin < text.size();) {
+    std::size_t end = text.size();
+    if (end - begin > line_bytes) {
+      end = text.rfind(' ', begin + line_bytes);
+      if (end == std::string::npos || end <= begin) end = std::min(text.find(' ', begin), text.size());
+    }
+    if (begin > 0) lines += ".\"\\n\".";
+    lines += gnuplot_string(text.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  return lines.empty() ? gnuplot_string(text) : lines;
 }
 
 }  // namespace pocketray

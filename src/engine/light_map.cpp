@@ -4,6 +4,9 @@
 #include <cmath>
 
 #include "base/check.h"
+#include "effect/setting_list.h"
+#include "indirect/ambient.h"
+#include "indirect/environment.h"
 #include "shade/carried.h"
 #include "shade/contact.h"
 #include "shade/even_points.h"
@@ -151,6 +154,20 @@ bool add_to_row(void* context, std::uint32_t thread, std::uint32_t row) {
 }
 
 }  // namespace
+
+IndirectChoice own_indirect(const Scene& scene) {
+  const bool has_ambient = AmbientIndirect::use(scene) != IndirectUse::nothing;
+  return has_ambient || scene.radiosity_values.empty() ? indirect_choice(Effect::ambient) : IndirectChoice::none;
+}
+
+const char* mapped_light_unfit(const Renderer& renderer) {
+  const EffectMask mask = renderer.effects.mask;
+  if (!has(mask, Effect::radiosity) && !has(mask, Effect::instant_radiosity))
+    return "the scene has no indirect light but ambient light: give --indirect instant-radiosity, or bake --radiosity";
+  const bool mixes = has(mask, Effect::radiosity) || own_indirect(renderer.scene) == IndirectChoice::none;
+  if (mixes && environment_of(renderer.scene)) return "radiosity stores the environment's light, too";
+  return nullptr;
+}
 
 const char* light_map_unfit(const Renderer& renderer) {
   const EffectMask mask = renderer.effects.mask;

@@ -35,7 +35,14 @@ struct LightMap {
   const Vec3* light;             // the same: as indirect_light() has it
 };
 
-// Why a renderer's frames cannot take light from a map; null: they can. The text continues "light maps: ".
+// The indirect light of frames that take more from a map: ambient light, or what the scene has besides stored
+// radiosity, which is among what maps have.
+IndirectChoice own_indirect(const Scene& scene);
+
+// Why the indirect light of a renderer's frames cannot come from a map; null: it can.
+const char* mapped_light_unfit(const Renderer& renderer);
+// Why a renderer's frames, of its own indirect light, cannot take more from a map; null: they can. The text continues
+// "light maps: ".
 const char* light_map_unfit(const Renderer& renderer);
 
 // Number of first hits that the frame keeps for what follows: set FrameData::first_hits after prepare_frame().

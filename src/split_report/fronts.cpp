@@ -134,7 +134,8 @@ Status draw_fronts(const std::string& folder, const std::string& title, const Fr
                    const std::vector<ClientsRow>& clients, bool* drawn) {
   std::string text = "set terminal pngcairo size 1500,560 font 'sans,11' noenhanced\nset output 'fronts.png'\n";
   write_data(&text, "energy", fronts.energy), write_data(&text, "bytes", fronts.bytes);
-  text += "set multiplot layout 1,3 title " + gnuplot_string(title) + " font 'sans,13'\nset grid lc rgb '#dddddd'\n";
+  text +=
+      "set multiplot layout 1,3 title " + gnuplot_lines(title, 180) + " font 'sans,13'\nset grid lc rgb '#dddddd'\n";
   write_front_plot(&text, "energy", "Time against energy", "millijoules per frame, beyond the device idle", "top left");
   write_front_plot(&text, "bytes", "Time against price", "kilobytes per frame, each of which has its price",
                    "bottom left");

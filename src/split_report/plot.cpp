@@ -36,6 +36,9 @@ void write_data(std::string* f, const SplitFigures& s, std::uint32_t pixel_count
   for (const SplitPoint& p : s.sweep) append(f, "%.5f %.6g\n", p.m, ms(p));
   append(f, "EOD\n$chosen << EOD\n%.5f %.6g\nEOD\n$best << EOD\n%.5f %.6g\nEOD\n", s.chosen.m, ms(s.chosen), s.best.m,
          ms(s.best));
+  if (s.both.ns_per_pixel > 0)
+    append(f, "$effect << EOD\n%.5f %.6g\nEOD\n$both << EOD\n%.5f %.6g\nEOD\n", s.effect.m, ms(s.effect), s.both.m,
+           ms(s.both));
   append(f, "$paper << EOD\n");
   for (const PaperRow& row : s.paper)
     append(f, "\"%s\\n%d processors\" %.1f %.1f %.1f\n", row.scene, row.processors, row.ns_per_pixel, row.our_ns,
@@ -59,8 +62,14 @@ void write_sweep_plot(std::string* f, const SplitFigures& s, std::uint32_t pixel
          "  $sweep using 1:2 title 'm fixed' with linespoints pt 7 ps 0.8 lw 2 lc rgb '#1f6fb4', \\\n"
          "  $best using 1:2 title 'best fixed m = %.3f: %.4g ms' with points pt 6 ps 2.2 lw 2 lc rgb '#1f6fb4', "
          "\\\n"
-         "  $chosen using 1:2 title 'chosen m = %.3f: %.4g ms' with points pt 2 ps 1.8 lw 3 lc rgb '#d62728'\n",
+         "  $chosen using 1:2 title 'chosen m = %.3f: %.4g ms' with points pt 2 ps 1.8 lw 3 lc rgb '#d62728'",
          local_ms, local_ms, s.best.m, s.best.ns_per_pixel * pixel_count * 1e-6, s.chosen.m, chosen_ms);
+  if (s.both.ns_per_pixel > 0)
+    append(f,
+           ", \\\n  $effect using 1:2 title 'by effect: %.4g ms' with points pt 9 ps 1.8 lc rgb '#2ca02c', \\\n"
+           "  $both using 1:2 title 'rows and effect, m = %.3f: %.4g ms' with points pt 1 ps 1.8 lw 3 lc rgb '#2ca02c'",
+           s.effect.ns_per_pixel * pixel_count * 1e-6, s.both.m, s.both.ns_per_pixel * pixel_count * 1e-6);
+  append(f, "\n");
 }
 
 void write_paper_plot(std::string* f) {
@@ -84,6 +93,8 @@ Status write_split_csv(const std::string& folder, const SplitFigures& figures, s
   write_point(&text, "chosen", figures.chosen, pixel_count);
   write_point(&text, "best", figures.best, pixel_count);
   write_point(&text, "local", figures.local, pixel_count);
+  write_point(&text, "effect", figures.effect, pixel_count);
+  write_point(&text, "rows and effect", figures.both, pixel_count);
   return write_file(folder + "/split.csv", text);
 }
 
@@ -95,7 +106,7 @@ Status draw_split(const std::string& folder, const SplitPlot& plot, const SplitF
          paper ? 1500 : 860);
   write_data(&text, figures, plot.pixel_count);
   append(&text, "set multiplot layout 1,%d title %s font 'sans,13'\n", paper ? 2 : 1,
-         gnuplot_string(plot.title).c_str());
+         gnuplot_lines(plot.title, paper ? 180 : 100).c_str());
   write_sweep_plot(&text, figures, plot.pixel_count);
   if (paper) write_paper_plot(&text);
   append(&text, "unset multiplot\n");

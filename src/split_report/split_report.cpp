@@ -49,7 +49,8 @@ struct Experiment {
   }
 };
 
-Status open_experiment(const SplitSetup& setup, Progress* progress, std::uint64_t* frames_done, Experiment* e) {
+Status open_experiment(const SplitSetup& setup, SplitKind kind, Progress* progress, std::uint64_t* frames_done,
+                       Experiment* e) {
   CHECK(setup.device != nullptr && setup.store != nullptr);
   CHECK(setup.server_count >= 1 && setup.server_count <= kServerCountMax);
   CHECK_GT(setup.frame_count, 0u);
@@ -69,9 +70,11 @@ Status open_experiment(const SplitSetup& setup, Progress* progress, std::uint64_
   ClientOptions options;
   options.format = setup.format;
   options.pace.ns_per_pixel = setup.device_ns, options.pace.prepare_ns = setup.device_prepare_ns;
+  options.own_light_pixel_ns = setup.own_light_ns;
+  options.light.split = kind, options.light.indirect = renderer->settings.indirect;
   options.decode = setup.decode;
   options.check_count = 0;  // measures the split alone: spot checks would add 1 %
-  e->memory.resize(client_need(renderer->settings, setup.format, setup.server_count) + kArenaAlignment);
+  e->memory.resize(client_need(renderer->settings, setup.format, setup.server_count, options.light) + kArenaAlignment);
   Arena arena = make_arena("client", e->memory.data(), e->memory.size());
   RETURN_IF_ERROR(make_client(options, renderer->settings, setup.scene, e->world.link, e->world.addresses.data(),
                               setup.server_count, &arena, &e->client));
@@ -125,6 +128,8 @@ Status measure_point(Experiment* e, std::uint32_t lap_count, SplitPoint* point, 
     point->prepared += double(e->client.prepared) / frame_count;
     point->bytes += double(share.bytes_in + share.bytes_out) / frame_count;
     point->row_bytes += double(share.row_bytes) / frame_count;
+    point->by_effect += double(share.by_effect) / frame_count;
+    point->light_bytes += double(share.light_bytes) / frame_count;
     point->kept_rows += double(share.kept_rows) / frame_count;
     point->kept_bytes += double(share.kept_bytes) / frame_count;
     point->row_count += double(settings.height - share.device_rows) / frame_count;
@@ -162,6 +167,23 @@ std::size_t least_of(const std::vector<SplitPoint>& sweep) {
   return static_cast<std::size_t>(std::min_element(sweep.begin(), sweep.end(), faster) - sweep.begin());
 }
 
+// Frames shared in another way, in a world of their own.
+Status measure_kind(const SplitSetup& setup, SplitKind kind, std::uint64_t* frames_done, Progress* progress,
+                    SplitPoint* point, bool* complete) {
+  const Settings kept = setup.device->settings;
+  Status status;
+  SplitPoint measured;
+  {
+    Experiment e;
+    status = open_experiment(setup, kind, progress, frames_done, &e);
+    if (status.ok) status = settle(&e, complete);
+    if (status.ok && *complete) status = measure_point(&e, kChosenLaps, &measured, complete, nullptr);
+  }
+  if (status.ok && *complete) *point = measured;
+  const Status back = change_settings(setup.device, kept);  // the client has chosen the device's indirect light
+  return status.ok ? back : status;
+}
+
 Status measure_paper_row(const SplitSetup& given, double* bytes_per_pixel, std::uint64_t* frames_done,
                          Progress* progress, PaperRow* row, bool* complete) {
   CHECK_GT(*bytes_per_pixel, 0);
@@ -176,7 +198,7 @@ Status measure_paper_row(const SplitSetup& given, double* bytes_per_pixel, std::
   for (int run = 0; run < kPaperRuns && *complete; ++run) {
     setup.line.bytes_per_second = static_cast<std::uint64_t>(*bytes_per_pixel * 1e9 / kPaperTransferNs);
     Experiment e;
-    RETURN_IF_ERROR(open_experiment(setup, progress, frames_done, &e));
+    RETURN_IF_ERROR(open_experiment(setup, SplitKind::rows, progress, frames_done, &e));
     RETURN_IF_ERROR(settle(&e, complete));
     if (*complete) RETURN_IF_ERROR(measure_point(&e, 1, &point, complete, nullptr));
     if (point.row_count > 0) *bytes_per_pixel = point.row_bytes / (point.row_count * e.client.settings.width);
@@ -194,6 +216,10 @@ std::uint64_t split_frame_count(const SplitSetup& setup, std::uint32_t step_coun
   return 4 + (2 + kChosenLaps) * lap + (step_count + 2 * kRefinements) * 2 * lap;
 }
 
+std::uint64_t effect_frame_count(const SplitSetup& setup) {
+  return 2 * (4 + (2 + kChosenLaps) * std::uint64_t(kSkippedFrames + setup.frame_count));
+}
+
 std::uint64_t paper_frame_count(const SplitSetup& setup) {
   return kPaperRows * kPaperRuns * (4 + 3 * std::uint64_t(kSkippedFrames + setup.frame_count));
 }
@@ -203,7 +229,7 @@ Status measure_split(const SplitSetup& setup, std::uint32_t step_count, Progress
   Experiment e;
   std::uint64_t frames_done = 0;
   bool complete;
-  RETURN_IF_ERROR(open_experiment(setup, progress, &frames_done, &e));
+  RETURN_IF_ERROR(open_experiment(setup, SplitKind::rows, progress, &frames_done, &e));
   RETURN_IF_ERROR(settle(&e, &complete));
   RowStreams whole;
   open_row_streams({e.client.settings.width, e.client.settings.height,
@@ -232,6 +258,15 @@ Status measure_split(const SplitSetup& setup, std::uint32_t step_count, Progress
   }
   if (!sweep->empty()) figures->best = (*sweep)[least_of(*sweep)];
   return success();
+}
+
+Status measure_effects(const SplitSetup& setup, Progress* progress, SplitFigures* figures) {
+  CHECK_GT(setup.own_light_ns, 0);
+  std::uint64_t frames_done = 0;
+  bool complete = true;
+  RETURN_IF_ERROR(measure_kind(setup, SplitKind::effect, &frames_done, progress, &figures->effect, &complete));
+  if (!complete) return success();
+  return measure_kind(setup, SplitKind::automatic, &frames_done, progress, &figures->both, &complete);
 }
 
 Status measure_paper(const SplitSetup& setup, Progress* progress, SplitFigures* figures) {

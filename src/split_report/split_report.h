@@ -24,6 +24,7 @@ struct SplitSetup {
   platform::NullLinkSettings line;
   std::uint32_t server_count = 1;
   double device_ns = 0, server_ns = 0;                  // time per pixel on the device and on each server
+  double own_light_ns = 0;                              // as device_ns, in frames shared by effect; 0: none are
   double device_prepare_ns = 0, server_prepare_ns = 0;  // and of a frame before its first pixel
   CodeCost decode, encode;                              // of rows on the device and on each server
   float orbit_degrees = 1;        // that the camera orbits its target per frame; 0: it stands still
@@ -41,6 +42,7 @@ struct SplitPoint {
   double row_count = 0;                      // sent by servers
   double kept_rows = 0, kept_bytes = 0;      // of these, in chunks of which nothing was traced; their bytes
   double server_rows[kServerCountMax] = {};  // of these, by server
+  double by_effect = 0, light_bytes = 0;     // of the frames, the part shared by effect; bytes of light
 };
 
 struct PaperRow {
@@ -54,6 +56,7 @@ struct PaperRow {
 
 struct SplitFigures {
   SplitPoint chosen, best, local;  // the program's choice; the sweep's minimum; the device alone
+  SplitPoint effect, both;         // shared by effect; whichever of rows, effect or both is chosen
   std::vector<SplitPoint> sweep;   // by m
   double whole_bytes = 0;          // of a frame if it were a connection's first
   // Of a frame, all rows, after the one before; the second's error, root mean square, in levels of the format.
@@ -68,6 +71,9 @@ std::uint64_t paper_frame_count(const SplitSetup& setup);
 // Measures the chosen split first, then m = 1, m = 0 and points between, `step_count` in all, and a few more around the
 // minimum. An interrupt keeps finished points; without any, sweep is empty.
 Status measure_split(const SplitSetup& setup, std::uint32_t step_count, Progress* progress, SplitFigures* figures);
+// Frames shared by effect, and in whichever way is chosen, as `render --split effect` and `auto` do.
+std::uint64_t effect_frame_count(const SplitSetup& setup);
+Status measure_effects(const SplitSetup& setup, Progress* progress, SplitFigures* figures);
 // Table 1 of [Aranha07] with the paper's T_m and T_s, and T_t = 400 ns per pixel for this scene's compressed rows: the
 // link's bandwidth follows from that, without latency, since the paper states none. Frames are traced whole, whatever
 // the device's coherence.

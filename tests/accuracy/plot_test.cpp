@@ -158,6 +158,10 @@ TEST_CASE("plot_labels_do_not_overlap") {
 // Goal: text of the sweep cannot become a command. Method: characters that end a gnuplot or shell string.
 TEST_CASE("plot_text_is_quoted") {
   CHECK(gnuplot_string("it's\nso") == "'it''s so'");
+  CHECK(gnuplot_lines("one two three", 7) == "'one two'.\"\\n\".'three'");
+  CHECK(gnuplot_lines("one two", 7) == "'one two'");
+  CHECK(gnuplot_lines("unbreakable it is", 4) == "'unbreakable'.\"\\n\".'it'.\"\\n\".'is'");
+  CHECK(gnuplot_lines("", 4) == "''");
   CHECK(shell_word("it's") == "'it'\\''s'");
   Sweep sweep = empty_sweep();
   add_knob(&sweep, "a'b`c", 3, 1);

@@ -10,6 +10,7 @@
 
 #include "platform/devices/device_list.h"
 #include "session/interrupt.h"
+#include "split_report/pixel_cost.h"
 #include "support/effort.h"
 #include "support/generated_scene.h"
 #include "support/scripted_client.h"
@@ -124,6 +125,48 @@ TEST_CASE("split_report_prices_preparation") {
       CHECK(p.prepared == (p.m > 0 ? 1 : 0));
       CHECK((p.m == 0 || p.ns_per_pixel * pixels >= kPrepareNs));
     }
+  }
+}
+
+// Goal: where the link is as slow as the device, sharing rows and effects takes less time than either alone, and less
+// than the best share of rows; the settings stay. Method: a device that takes .55 of its time with its own light.
+TEST_CASE("split_report_measures_effects") {
+  Reporting r;
+  make_reporting(builtin_store(), "cornell", "tablet", 1, &r);
+  Settings settings = r.device->renderer.settings;
+  settings.width = 64, settings.height = 60, settings.indirect = indirect_choice(Effect::instant_radiosity);
+  r.device = make_renderer(stored_scene(builtin_store(), "cornell").scene, settings);
+  r.setup.device = &r.device->renderer;
+  r.setup.own_light_ns = 0.55 * r.setup.device_ns;
+  r.setup.line.bytes_per_second = static_cast<std::uint64_t>(0.6e9 / r.setup.device_ns);
+  r.setup.frame_count = 8;
+  SplitFigures figures;
+  Progress progress = start_progress("split", split_frame_count(r.setup, kSteps));
+  REQUIRE(measure_split(r.setup, kSteps, &progress, &figures).ok);
+  REQUIRE(measure_effects(r.setup, &progress, &figures).ok);
+  CHECK(r.device->renderer.settings.indirect == settings.indirect);
+  const SplitPoint &effect = figures.effect, &both = figures.both;
+  std::printf("best rows %.1f ns per pixel, by effect %.1f, both %.1f, %.2f of the frames by effect\n",
+              figures.best.ns_per_pixel, effect.ns_per_pixel, both.ns_per_pixel, both.by_effect);
+  CHECK((effect.m == doctest::Approx(1) && effect.by_effect == doctest::Approx(1) && effect.light_bytes > 0));
+  CHECK(effect.ns_per_pixel >= r.setup.own_light_ns);
+  CHECK((both.m > 0 && both.m < 1 && both.light_bytes > 0));
+  CHECK(both.ns_per_pixel < 0.95 * std::min(figures.best.ns_per_pixel, effect.ns_per_pixel));
+}
+
+// Goal: a pixel with the device's own light costs something where frames can be shared by effect, and nothing is said
+// where they cannot.
+TEST_CASE("split_report_prices_own_light") {
+  for (const Effect effect : {Effect::instant_radiosity, Effect::ambient}) {
+    Settings settings;
+    settings.width = 32, settings.height = 24, settings.indirect = indirect_choice(effect);
+    const std::unique_ptr<TestRenderer> device = make_renderer(stored_scene(builtin_store(), "cube").scene, settings);
+    double whole_ns = 0, own_ns = -1;
+    REQUIRE(measure_pixel_ns(&device->renderer, &whole_ns).ok);
+    REQUIRE(measure_own_light_ns(&device->renderer, 6, &own_ns).ok);
+    CHECK(whole_ns > 0);
+    CHECK((own_ns > 0) == (effect == Effect::instant_radiosity));
+    CHECK(device->renderer.settings.indirect == settings.indirect);
   }
 }
 

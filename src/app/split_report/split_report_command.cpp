@@ -14,6 +14,7 @@
 #include "session/report.h"
 #include "session/scene_identity.h"
 #include "split_report/fronts.h"
+#include "split_report/pixel_cost.h"
 #include "split_report/plot.h"
 
 namespace pocketray {
@@ -31,26 +32,17 @@ struct ReportOptions {
   bool no_paper = false;
 };
 
-// Cost of a pixel on one thread of this machine: the median of a few frames.
-Status measure_pixel_ns(Renderer* renderer, double* ns) {
-  constexpr std::uint32_t kFrames = 3;
-  Workers* workers = renderer->workers;
-  Pace pace = renderer->pace;
-  renderer->workers = nullptr, renderer->pace = Pace();
-  double times[kFrames];
-  Status status;
-  for (double& time : times) {
-    if (status.ok) status = render_frame(renderer, 0, Aov::none, &interrupted);
-    time = renderer->timings.trace_ms * 1e6 / pixel_count(*renderer);
-  }
-  renderer->workers = workers, renderer->pace = pace;
-  *ns = range_of(times, kFrames).median;
-  return status;
+// What a pixel costs the device in frames shared by effect, where these are possible.
+Status make_own_light(double here_ns, SplitSetup* setup) {
+  double own_ns;
+  RETURN_IF_ERROR(measure_own_light_ns(setup->device, kLightPitch, &own_ns));
+  if (own_ns > 0) setup->own_light_ns = setup->device_ns * own_ns / here_ns;
+  return success();
 }
 
 Status make_setup(const ReportOptions& o, const platform::Device& device, Renderer* renderer, SplitSetup* setup) {
   double here_ns = 0;
-  if (o.device_ns <= 0 || o.server_ns <= 0) RETURN_IF_ERROR(measure_pixel_ns(renderer, &here_ns));
+  RETURN_IF_ERROR(measure_pixel_ns(renderer, &here_ns));
   setup->device = renderer;
   setup->format = device.bits_per_pixel == 16 ? WireFormat::rgb565 : WireFormat::rgb888;
   setup->line.bytes_per_second = device.link_bytes_per_second;
@@ -60,6 +52,7 @@ Status make_setup(const ReportOptions& o, const platform::Device& device, Render
   setup->server_count = o.server_count;
   setup->device_ns = o.device_ns > 0 ? o.device_ns : here_ns * device.slowdown / renderer->settings.threads;
   setup->server_ns = o.server_ns > 0 ? o.server_ns : here_ns;
+  RETURN_IF_ERROR(make_own_light(here_ns, setup));
   const PrepareCost cost = {device.prepare_triangle_ns, device.prepare_vertex_ns};
   setup->device_prepare_ns = prepare_ns(cost, renderer->scene);
   setup->server_prepare_ns = prepare_ns(kServerPrepare, renderer->scene);
@@ -112,6 +105,15 @@ Json front_json(const std::vector<FrontPoint>& points, const char* unit) {
 
 Json point_json(const SplitPoint& p) { return {{"m", p.m}, {"ns_per_pixel", p.ns_per_pixel}}; }
 
+// Null where frames cannot be shared so.
+Json effect_json(const SplitPoint& p) {
+  if (p.ns_per_pixel <= 0) return Json();
+  Json point = point_json(p);
+  point["bytes_per_frame"] = p.bytes, point["light_bytes_per_frame"] = p.light_bytes,
+  point["frames_by_effect"] = p.by_effect;
+  return point;
+}
+
 Json to_json(const ReportOptions& o, const SplitSetup& setup, const SplitFigures& s, const Extras& extras) {
   const Settings& settings = setup.device->settings;
   Json sweep = Json::array(), paper = Json::array(), clients = Json::array();
@@ -130,6 +132,9 @@ Json to_json(const ReportOptions& o, const SplitSetup& setup, const SplitFigures
   return {{"sweep", sweep},
           {"chosen", point_json(s.chosen)},
           {"best", point_json(s.best)},
+          {"by_effect", effect_json(s.effect)},
+          {"rows_and_effect", effect_json(s.both)},
+          {"device_own_light_ns_per_pixel", setup.own_light_ns > 0 ? Json(setup.own_light_ns) : Json()},
           {"local_ns_per_pixel", s.local.ns_per_pixel},
           {"paper", paper},
           {"energy_front", front_json(extras.fronts.energy, "millijoules_per_frame")},
@@ -165,13 +170,15 @@ void print_sweep(const SplitSetup& setup, const SplitFigures& s) {
   double pixels = pixel_count(*setup.device);
   auto print = [&](const char* what, const SplitPoint& p) {
     if (p.ns_per_pixel > 0)
-      std::printf("  %-14s %6.3f %14.1f %12.2f %12.1f\n", what, p.m, p.ns_per_pixel, p.ns_per_pixel * pixels * 1e-6,
+      std::printf("  %-16s %6.3f %14.1f %12.2f %12.1f\n", what, p.m, p.ns_per_pixel, p.ns_per_pixel * pixels * 1e-6,
                   p.bytes * 1e-3);
   };
-  std::printf("  %-14s %6s %14s %12s %12s\n", "", "m", "ns per pixel", "ms per frame", "kB per frame");
+  std::printf("  %-16s %6s %14s %12s %12s\n", "", "m", "ns per pixel", "ms per frame", "kB per frame");
   for (const SplitPoint& p : s.sweep) print("m fixed", p);
   print("best of these", s.best);
   print("chosen", s.chosen);
+  print("by effect", s.effect);
+  print("rows and effect", s.both);
   if (s.sweep.empty()) return;
   std::printf("  chosen m takes %.3f of the best time and is %.4g times as fast as the device alone\n",
               s.chosen.ns_per_pixel / s.best.ns_per_pixel, s.local.ns_per_pixel / s.chosen.ns_per_pixel);
@@ -212,9 +219,9 @@ void print_paper(const SplitFigures& s) {
 }
 
 void print_front(const char* unit, const std::vector<FrontPoint>& points) {
-  std::printf("  %-14s %6s %14s %14s\n", "", "m", "ms per frame", unit);
+  std::printf("  %-16s %6s %14s %14s\n", "", "m", "ms per frame", unit);
   for (const FrontPoint& p : points)
-    if (p.on_front) std::printf("  %-14s %6.3f %14.2f %14.3f\n", "not beaten", p.m, p.ms, p.cost);
+    if (p.on_front) std::printf("  %-16s %6.3f %14.2f %14.3f\n", "not beaten", p.m, p.ms, p.cost);
 }
 
 void print_extras(const Extras& extras) {
@@ -228,7 +235,7 @@ void print_extras(const Extras& extras) {
   print_front("kB per frame", extras.fronts.bytes);
   if (extras.clients.empty()) return;
   std::printf("one such server and many such devices, each with its own best share at the server's price\n");
-  std::printf("  %-14s %6s %14s %14s\n", "clients", "m", "ms per frame", "price");
+  std::printf("  %-16s %6s %14s %14s\n", "clients", "m", "ms per frame", "price");
   for (const ClientsRow& row : extras.clients)
     std::printf("  %-14u %6.3f %14.2f %14.2f\n", row.count, row.m, row.ms, row.price);
 }
@@ -253,6 +260,11 @@ Status measure(const ReportOptions& o, const SplitSetup& setup, SplitFigures* fi
   Progress progress = start_progress("split", split_frame_count(setup, o.step_count));
   Status status = measure_split(setup, o.step_count, &progress, figures);
   end_progress(&progress);
+  if (status.ok && !interrupted && setup.own_light_ns > 0) {
+    progress = start_progress("rows and effects", effect_frame_count(setup));
+    status = measure_effects(setup, &progress, figures);
+    end_progress(&progress);
+  }
   if (!status.ok || interrupted || o.no_paper) return status;
   progress = start_progress("the paper's table", paper_frame_count(setup));
   status = measure_paper(setup, &progress, figures);

@@ -3,8 +3,6 @@
 #include <algorithm>
 
 #include "base/check.h"
-#include "indirect/ambient.h"
-#include "indirect/environment.h"
 #include "remote/client/parts.h"
 #include "wire/light_coder.h"
 
@@ -95,21 +93,6 @@ void take_map(Renderer* renderer, Client* client) {
   l->map = {l->grid, l->asked_camera, l->asked.seconds, l->surfaces[next].data, l->light[next].data};
   l->map_request = l->asked;
   l->asked.frame = 0;
-}
-
-// The device's own: ambient light, or what the scene has besides stored radiosity, which is among what servers render.
-IndirectChoice own_indirect(const Scene& scene) {
-  const bool has_ambient = AmbientIndirect::use(scene) != IndirectUse::nothing;
-  return has_ambient || scene.radiosity_values.empty() ? indirect_choice(Effect::ambient) : IndirectChoice::none;
-}
-
-const char* unfit_because(const Renderer& renderer) {
-  const EffectMask mask = renderer.effects.mask;
-  if (!has(mask, Effect::radiosity) && !has(mask, Effect::instant_radiosity))
-    return "the scene has no indirect light but ambient light: give --indirect instant-radiosity, or bake --radiosity";
-  const bool mixes = has(mask, Effect::radiosity) || own_indirect(renderer.scene) == IndirectChoice::none;
-  if (mixes && environment_of(renderer.scene)) return "radiosity stores the environment's light, too";
-  return nullptr;
 }
 
 // Sets the indirect light of the device's frames.
@@ -204,7 +187,7 @@ Status choose_split(Renderer* renderer, Client* client) {
   bool wanted = o.split == SplitKind::effect || is_effect_wanted(client);
   if (wanted) {
     RETURN_IF_ERROR(set_indirect(renderer, o.indirect));
-    const char* reason = unfit_because(*renderer);
+    const char* reason = mapped_light_unfit(*renderer);
     if (!reason) {
       RETURN_IF_ERROR(set_indirect(renderer, own_indirect(renderer->scene)));
       reason = light_map_unfit(*renderer);
