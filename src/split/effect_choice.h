@@ -27,17 +27,18 @@ void observe_effect_times(EffectModel* model, const EffectTimes& times);
 // How long the next such frame will take; 0: unknown.
 double predict_effect_ns(const EffectModel& model);
 
-struct EffectChoice {
-  Smoothed rows_error, effect_error;               // time over the predicted one
-  std::uint32_t rows_count = 0, effect_count = 0;  // frames since the choice last changed, or since the other was tried
-  bool by_effect = false;                          // the last choice
-};
-
-// Chosen: frames until a way is known well enough to compare; frames between two trials of the slower one, each of
-// which costs at most what that one takes longer for a frame; and how much less time frames by effect must take, as
-// those by rows have the better picture.
-constexpr std::uint32_t kTrialFrames = 3, kRetryFrames = 128;
+// Chosen: frames until a way is known well enough to compare; frames between two trials of the slower one, at first and
+// after many in vain, each of which costs at most what that one takes longer for a frame; and how much less time frames
+// by effect must take, as those by rows have the better picture.
+constexpr std::uint32_t kTrialFrames = 3, kRetryFramesMin = 8, kRetryFrames = 128;
 constexpr double kFasterPart = 0.95;
+
+struct EffectChoice {
+  Smoothed rows_error, effect_error;         // time over the predicted one
+  std::uint32_t count = 0;                   // frames since the way last changed,
+  bool by_effect = false, on_trial = false;  // which is this one, perhaps for a trial
+  std::uint32_t retry = kRetryFramesMin;     // frames until the next trial of the other
+};
 
 // Records a frame that was shared in that way. predicted_ns 0: unknown.
 void observe_choice(EffectChoice* choice, bool by_effect, double predicted_ns, double ns);

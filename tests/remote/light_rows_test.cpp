@@ -45,7 +45,8 @@ TEST_CASE("effect_split_automatic_takes_the_faster") {
     effect += rig.client.share.by_effect;
     if (!rig.client.share.by_effect) CHECK(pixels_of(rig.client) == rig.local_pixels(0));
   }
-  CHECK(effect == int(kTrialFrames));
+  CHECK(effect >= int(kTrialFrames));
+  CHECK(effect <= 2 * int(kTrialFrames));
   CHECK(rig.client.light.effect_ns > rig.client.light.rows_ns);
 }
 
