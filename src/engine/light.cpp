@@ -26,6 +26,7 @@
 #include "shade/surface.h"
 #include "shade/texture.h"
 #include "shade/tile_shadows.h"
+#include "shade/virtual_light.h"
 
 namespace pocketray {
 namespace {
@@ -51,8 +52,9 @@ void choose_kernels(Renderer* renderer) {
   renderer->frame.settings = renderer->settings;
   renderer->frame.mask = renderer->effects.mask;
   renderer->frame.surface = find_surface_function(renderer->effects.mask);
-  const EffectMask virtual_lights = bit(Effect::instant_radiosity) & kEffectsBuilt;
-  renderer->frame.first_surface = find_surface_function(renderer->effects.mask & ~virtual_lights);
+  renderer->frame.first_surface = renderer->frame.surface;
+  renderer->frame.add_later_light =
+      has(renderer->effects.mask, Effect::instant_radiosity) ? add_later_virtual_light : nullptr;
   find_texture_functions(&renderer->frame);
   find_surroundings(&renderer->frame);
   if (renderer->effects.mask & kMapEffects & kEffectsBuilt)

@@ -1,6 +1,6 @@
 // Instant radiosity [Keller 1997]: light between surfaces as that of virtual point lights, placed by walks from the
 // lights before each frame (plan/place_virtual_lights.h). First hits take them with shadows, interleaved over blocks of
-// pixels (shade/interleaved.h); surfaces in mirrors and behind glass take all of them without shadows, by radiance().
+// pixels (shade/interleaved.h); in mirrors and behind glass, groups of them share a shadow ray (shade/virtual_light.h).
 #pragma once
 #include "effect/effect_probe.h"
 #include "indirect/indirect.h"

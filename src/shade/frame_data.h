@@ -151,6 +151,8 @@ using AlphaFunction = float (*)(const Scene& scene, const Material& material, st
                                 TextureFilter filter, const Footprints& footprints);
 // Radiance along a ray, given its first hit and the surface there if already known (otherwise null).
 using RadianceFunction = Vec3 (*)(Tracer* tracer, const Ray& ray, const Hit& hit, const Surface* surface);
+// Adds to a surface that is no first hit what first hits take with their tile. `weight` is the path's, to the surface.
+using LaterLightFunction = void (*)(Tracer* tracer, const Vec3& weight, Surface* surface);
 using ShadowsFunction = void (*)(Tracer* tracer, const RayPacket& rays, const Hit* hits, TileShadows* shadows);
 using StripFunction = void (*)(Tracer* tracer, const TileStrip& strip, const PixelRows& image);
 
@@ -190,15 +192,16 @@ struct FrameData {
   SurfaceFunction plain_surface = nullptr, plain_first_surface = nullptr;  // see ambient_gloss.h
   // Null: none but ambient light. At first hits: without light that trace_strip adds there.
   SurroundingsFunction surroundings = nullptr, first_surroundings = nullptr;
-  GlowFunction glow = nullptr, first_glow = nullptr;  // see material_maps.h
+  GlowFunction glow = nullptr;  // see material_maps.h
   ColorFunction color = nullptr;
   NumbersFunction numbers = nullptr;
   AlphaFunction alpha = nullptr;
   RadianceFunction radiance = nullptr;
-  ShadowsFunction find_shadows = nullptr;       // null if nothing casts a shadow
-  StripFunction trace_strip = nullptr;          // traces pixels in blocks; null: each by itself
-  StripFunction trace_lattice_strip = nullptr;  // the same, of those that undersampling traces
-  HitFilter visible_filter;                     // accept is null if nothing is cut out; see filters.h
+  LaterLightFunction add_later_light = nullptr;  // null: no light comes with the tiles
+  ShadowsFunction find_shadows = nullptr;        // null if nothing casts a shadow
+  StripFunction trace_strip = nullptr;           // traces pixels in blocks; null: each by itself
+  StripFunction trace_lattice_strip = nullptr;   // the same, of those that undersampling traces
+  HitFilter visible_filter;                      // accept is null if nothing is cut out; see filters.h
   decltype(HitFilter::accept) accept_opaque = nullptr, accept_clear = nullptr;  // with a ShadowContext
   bool filters_read_point = false;                                              // HitFilter::reads_point
   bool filter_every_shadow = false;  // false: only shadow rays to area lights need the filter

@@ -103,7 +103,7 @@ void mapped_surface(const FrameData& frame, const Ray& ray, const Hit& hit, Surf
     if (scene.grains.count && (!has(mask, Effect::second_uv) || has(frame.mask, Effect::anisotropy)))
       s->grain = surface_grain(frame, scene.grains[s->material - scene.materials.data], *s);
   }
-  (first ? frame.first_glow : frame.glow)(frame, s);
+  frame.glow(frame, s);
   if constexpr (has(mask, Effect::occlusion)) {
     if (has(frame.mask, Effect::ambient) && takes_part<mask>(frame, Effect::occlusion))
       s->glow += AmbientIndirect::radiance({scene, nullptr, s->point, s->normal, s->diffuse}) * open;
@@ -155,11 +155,10 @@ const Material& lobes_at(const FrameData& frame, const Surface& s, Material* map
 void add_material_maps(FrameData* frame) {
   CHECK(frame != nullptr && frame->scene != nullptr);
   CHECK((frame->mask & kMapEffects) != 0);
-  const EffectMask late = bit(Effect::instant_radiosity);  // its light comes with the tile
   EffectMask glow = frame->mask;
   if (has(glow, Effect::occlusion)) glow &= ~bit(Effect::ambient);  // mapped_surface() adds it
   frame->plain_surface = find_surface_function(frame->mask & ~bit(Effect::emission) & ~kIndirectEffects);
-  frame->glow = find_glow_function(glow), frame->first_glow = find_glow_function(glow & ~late);
+  frame->glow = find_glow_function(glow);
   frame->surface = find_mapped_surface<false>(frame->mask);
   frame->first_surface = find_mapped_surface<true>(frame->mask);
 }

@@ -17,6 +17,10 @@
 namespace pocketray {
 namespace {
 
+// Effects by which paths go on from their first hits.
+constexpr EffectMask kGoesOn =
+    bit(Effect::mirror) | bit(Effect::refraction) | bit(Effect::alpha_blend) | bit(Effect::back_face_culling);
+
 // Without refraction there are no media.
 struct NoMedia {};
 template <EffectMask mask>
@@ -227,6 +231,13 @@ Vec3 shade(Tracer* tracer, const Ray& ray, const Surface& s, const Contact* cont
   }
 }
 
+// Adds the light that first hits take with their tile to a surface that is none.
+template <EffectMask mask>
+void add_later_light(Tracer* tracer, const Path<mask>& path, Surface* s) {
+  if constexpr (has(kAllEffects, Effect::instant_radiosity) && (mask & kGoesOn) != 0)
+    if (tracer->frame->add_later_light) tracer->frame->add_later_light(tracer, path.weight, s);
+}
+
 // Adds the blending surfaces of a contact, one over the other. False if whatever is behind them does not matter.
 template <EffectMask mask>
 bool blend_layers(Tracer* tracer, const Ray& ray, const Contact& contact, Vec3* sum, Vec3* carried, Path<mask>* path) {
@@ -246,7 +257,10 @@ bool blend_layers(Tracer* tracer, const Ray& ray, const Contact& contact, Vec3* 
         hit_alpha<Effect::alpha_blend>(frame, *s.material, face.hit.triangle, face.hit.u, face.hit.v, footprints);
     Path<mask> covered = *path;
     covered.weight = path->weight * alpha;
-    if (alpha > 0) *sum += *carried * alpha * shade<mask>(tracer, ray, s, &contact, covered);
+    if (alpha > 0) {
+      add_later_light<mask>(tracer, covered, &s);
+      *sum += *carried * alpha * shade<mask>(tracer, ray, s, &contact, covered);
+    }
     *carried = *carried * (1 - alpha);
     path->weight = path->weight * (1 - alpha);
   }
@@ -314,9 +328,11 @@ Vec3 radiance_from(Tracer* tracer, Ray ray, Hit hit, const Surface* first, Path<
           continue;
         }
         if (next->hit.triangle != hit.triangle) frame.surface(frame, ray, on_path(next->hit, path), &found), s = &found;
+        if (s == &found) add_later_light<mask>(tracer, path, &found);
         return sum + carried * shade<mask>(tracer, ray, *s, &contact, path);
       }
     }
+    if (s == &found) add_later_light<mask>(tracer, path, &found);
     return sum + carried * shade<mask>(tracer, ray, *s, nullptr, path);
   }
   return sum;
@@ -355,8 +371,6 @@ struct RadiancePart {
   // environments, shade() leaves out the lobes that the plan does not have: fewer instances.
   static constexpr EffectMask reduced(EffectMask mask) {
     if (!has(mask, Effect::refraction)) mask &= ~bit(Effect::absorption);
-    constexpr EffectMask kGoesOn =
-        bit(Effect::mirror) | bit(Effect::refraction) | bit(Effect::alpha_blend) | bit(Effect::back_face_culling);
     if (!(mask & kGoesOn)) mask &= ~bit(Effect::mip_map);
     if (has(mask, Effect::environment)) mask |= bit(Effect::metallic_roughness);
     if (has(mask, Effect::metallic_roughness) || has(mask, Effect::mip_map))

@@ -139,10 +139,13 @@ void evaluate_surface(const FrameData& frame, const Ray& ray, const Hit& hit, Su
   add_glow<mask>(frame, s);
 }
 
+// Virtual lights need shadow rays: virtual_light.h.
+constexpr EffectMask kStoredLight = IndirectList::kEffects & ~bit(Effect::instant_radiosity);
+
 struct SurfacePart {
   using Function = SurfaceFunction;
   static constexpr EffectsOf<bit(Effect::smooth_normal) | bit(Effect::texture) | bit(Effect::vertex_color) |
-                             bit(Effect::emission) | bit(Effect::mip_map) | IndirectList::kEffects>
+                             bit(Effect::emission) | bit(Effect::mip_map) | kStoredLight>
       kEffects = {};
   template <EffectMask mask>
   static constexpr Function instance() {
@@ -152,8 +155,7 @@ struct SurfacePart {
 
 struct GlowPart {
   using Function = GlowFunction;
-  static constexpr EffectsOf<bit(Effect::texture) | bit(Effect::emission) | bit(Effect::mip_map) |
-                             IndirectList::kEffects>
+  static constexpr EffectsOf<bit(Effect::texture) | bit(Effect::emission) | bit(Effect::mip_map) | kStoredLight>
       kEffects = {};
   template <EffectMask mask>
   static constexpr Function instance() {
@@ -175,7 +177,7 @@ struct SecondSurfacePart {
 };
 struct SecondGlowPart {
   using Function = GlowFunction;
-  static constexpr EffectsOf<IndirectList::kEffects> kEffects = {};
+  static constexpr EffectsOf<kStoredLight> kEffects = {};
   template <EffectMask mask>
   static constexpr Function instance() {
     return add_glow<mask | kSecond | bit(Effect::emission)>;

@@ -29,7 +29,7 @@ struct Surface : LobeFrame {
   Vec3 offset;  // from the point to a safe origin on the side the ray came from
   Vec3 geometric;
   Vec3 diffuse;            // albedo
-  Vec3 glow;               // radiance that leaves without any lights: emission, ambient
+  Vec3 glow;               // radiance that leaves without any lights: emission, ambient; virtual lights add to it
   bool front;              // the ray met the front (counter-clockwise) side
   bool is_tinted;          // by `tint`, the colour of texture and vertices; otherwise that is not set
   std::uint16_t metallic;  // of a metallic-roughness map, in 65535ths; not set without one, nor is the roughness
