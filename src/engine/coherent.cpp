@@ -63,8 +63,6 @@ bool begin_following(Renderer* renderer) {
     state->whole_because = state->unplanned_because;
   } else if (renderer->effects.mask & kNotFollowed & kEffectsBuilt) {
     state->whole_because = "pixels depend on their neighbours";
-  } else if (is_compensated(renderer->settings, renderer->effects.mask)) {
-    state->whole_because = "rays of compensation are not known";
   } else if (!fits(*c, renderer->frame)) {
     state->whole_because = "more samples, lights or effects than memory was planned for";
   } else if (renderer->settings.coherence == CoherenceMode::automatic && rests(&state->trial)) {

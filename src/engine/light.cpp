@@ -47,6 +47,7 @@ void choose_kernels(Renderer* renderer) {
   renderer->frame.accel_info = renderer->accel_info;
   renderer->frame.first_rays = renderer->accel_info;
   renderer->frame.first_hits = nullptr;
+  renderer->frame.compensation_paths = nullptr;
   renderer->frame.last = nullptr;
   renderer->frame.ray_by_ray = false;
   renderer->frame.settings = renderer->settings;

@@ -50,6 +50,7 @@ CoherencePlan coherence_plan(const Settings& settings, std::uint32_t light_point
   plan.width = settings.width, plan.height = settings.height;
   plan.samples = settings.samples_per_pixel, plan.threads = settings.threads, plan.light_points = light_point_count;
   plan.area_lights = area_light_count, plan.recolorable = recolorable;
+  plan.compensated = settings.compensation == Compensation::rays;
   plan.table_side = settings.coherence_table, plan.tables_only = settings.coherence_by_tables;
   return plan;
 }
@@ -141,7 +142,6 @@ Status plan_memory(const Scene& scene, const Settings& settings, const EffectPla
   bool wanted = settings.coherence == CoherenceMode::on || (settings.coherence == CoherenceMode::automatic && changes);
   const char* mixes = is_interleaved(effects.mask) && settings.coherence_by_tables
                           ? "the tables do not know which pixels mix their light"
-                      : is_compensated(settings, effects.mask)   ? "rays of compensation are not known"
                       : has(effects.mask, Effect::selective)     ? "selective rendering interpolates pixels"
                       : has(effects.mask, Effect::undersampling) ? "undersampling reconstructs pixels"
                                                                  : nullptr;

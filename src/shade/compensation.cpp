@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <utility>
 
 #include "base/check.h"
@@ -20,6 +21,7 @@ struct Candidate {
   Vec3 irradiance;
   Ray ray;
   std::uint32_t emitter;  // that casts no shadow; kNone: none
+  std::uint16_t index;    // of the light
 };
 
 // One of some candidates, chosen by what they contribute, and their sum.
@@ -63,16 +65,18 @@ struct CompensationRays {
   TraceStats* stats;
   std::uint64_t* rays;
   std::uint32_t place;  // in the pattern
+  CompensationPath* path;
 
   // Of all that the candidates stand for: nothing, if the chosen one is blocked.
-  Vec3 arriving(const Choice& choice, float scale) const {
+  Vec3 arriving(const Choice& choice, float scale, std::uint16_t* light) const {
     if (!(choice.sum > 0)) return {0, 0, 0};
     if (has(frame.mask, Effect::shadow)) {
       const ShadowContext context = {&frame, choice.chosen.emitter};
       const HitFilter opaque = {frame.accept_opaque, &context, frame.filters_read_point};
       const bool is_filtered = frame.filter_every_shadow || choice.chosen.emitter != kNone;
       ++*rays;
-      if (frame.accel_info->occluded(frame.accel, choice.chosen.ray, is_filtered ? &opaque : nullptr, stats))
+      *light = choice.chosen.index;
+      if (frame.first_rays->occluded(frame.accel, choice.chosen.ray, is_filtered ? &opaque : nullptr, stats))
         return {0, 0, 0};
     }
     return choice.chosen.irradiance * (choice.sum / choice.most * scale);
@@ -90,21 +94,24 @@ struct CompensationRays {
         LightSample sample;
         if (!lights_up(frame, s, run, light, &sample) || is_below(s, sample.direction)) continue;
         const Vec3 irradiance = sample.irradiance * dot(s.normal, sample.direction);
-        choice.add({irradiance, {safe_origin(s, 1), sample.to_light, sample.t_max}, light.material});
+        choice.add({irradiance,
+                    {safe_origin(s, 1), sample.to_light, sample.t_max},
+                    light.material,
+                    static_cast<std::uint16_t>(i)});
       }
     }
-    return arriving(choice, static_cast<float>(stride));
+    return arriving(choice, static_cast<float>(stride), &path->light);
   }
 
   Vec3 from_virtual_lights(const Surface& s) const {
     const Vec3 origin = safe_origin(s, 1);
     Choice choice = {spread_number(place, kStepOfVirtualLights)};
     for (std::uint32_t i = place; i < lights.count; i += kPatternPixels) {
-      Candidate candidate = {{0, 0, 0}, {}, kNone};
+      Candidate candidate = {{0, 0, 0}, {}, kNone, static_cast<std::uint16_t>(i)};
       if (arrives(lights.light[i], lights.geometry_max, s, origin, &candidate.irradiance, &candidate.ray))
         choice.add(candidate);
     }
-    return arriving(choice, static_cast<float>(kPatternPixels));
+    return arriving(choice, static_cast<float>(kPatternPixels), &path->virtual_light);
   }
 
   // π times the light from a direction, by the share of it that the virtual lights lack.
@@ -116,6 +123,7 @@ struct CompensationRays {
     Hit hit;
     ++*rays;
     frame.first_rays->closest(frame.accel, ray, visible_filter(frame), &hit, stats);
+    path->end = ray.origin + direction * (hit.triangle == kNoTriangle ? ray.t_max : hit.t);
     if (hit.triangle == kNoTriangle) return {0, 0, 0};
     Surface s;
     frame.first_surface(frame, ray, hit, &s);
@@ -126,6 +134,20 @@ struct CompensationRays {
 };
 
 }  // namespace
+
+void store(const CompensationPath& path, KeptPath* kept) {
+  std::uint32_t words[4];
+  std::memcpy(words, &path, sizeof words);
+  for (int i = 0; i < 4; ++i) kept->words[i].store(words[i], std::memory_order_relaxed);
+}
+
+CompensationPath load(const KeptPath& kept) {
+  std::uint32_t words[4];
+  for (int i = 0; i < 4; ++i) words[i] = kept.words[i].load(std::memory_order_relaxed);
+  CompensationPath path;
+  std::memcpy(static_cast<void*>(&path), words, sizeof words);
+  return path;
+}
 
 Vec3 compensation_direction(std::uint32_t place_in_pattern) {
   CHECK_LT(place_in_pattern, kPatternPixels);
@@ -145,14 +167,18 @@ void add_compensation(const FrameData& frame, const InterleavedPoints& points, T
                       InterleavedLight* light) {
   CHECK_LE(points.count, kPacketMax);
   const VirtualLights& lights = *virtual_lights_of(frame.indirect);
-  if (!(lights.first_geometry_max > 0)) return;
+  const bool is_lacking = lights.first_geometry_max > 0;
+  if (!is_lacking && !points.pixel) return;
   for (std::uint32_t i = 0; i < points.count; ++i) {
     const Surface& s = *points.surface[i];
-    if (is_zero(s.diffuse)) continue;
-    const std::uint32_t place = points.place[i];
-    const Vec3 light_lacking = CompensationRays{frame, lights, stats, rays, place}.from(
-        s, about_normal(s.normal, compensation_direction(place)));
-    light[i].lit += light_lacking * (1.0f / kPatternPixels);
+    CompensationPath path = {s.point, kNoPathLight, kNoPathLight};
+    if (is_lacking && !is_zero(s.diffuse)) {
+      const std::uint32_t place = points.place[i];
+      const Vec3 light_lacking = CompensationRays{frame, lights, stats, rays, place, &path}.from(
+          s, about_normal(s.normal, compensation_direction(place)));
+      light[i].lit += light_lacking * (1.0f / kPatternPixels);
+    }
+    if (points.pixel) store(path, &frame.compensation_paths[points.pixel[i]]);
   }
 }
 

@@ -132,6 +132,7 @@ struct LastPicture {
 };
 
 struct FrameData;
+struct KeptPath;
 struct Rgba;
 struct Surface;
 struct TileShadows;
@@ -214,7 +215,8 @@ struct FrameData {
   IndirectData indirect;
   const EnvironmentLights* environment_lights = nullptr;  // set with Effect::environment_shadow
   Hit* first_hits = nullptr;  // receives the first hits, width × height for each sample in turn; null: not kept
-  bool ray_by_ray = false;    // no packets
+  KeptPath* compensation_paths = nullptr;  // the same of compensation's rays, see compensation.h
+  bool ray_by_ray = false;                 // no packets
   const LastPicture* last =
       nullptr;  // set with Resolution::interleaved or MovingContrast::as_seen where pictures follow each other
 };

@@ -106,9 +106,19 @@ void find_first_hits(Tracer* tracer, const SharedTile& tile, const PixelList& pi
       frame.first_surface(frame, first->ray[i], first->hit[i], &first->shadows.surface[i]);
 }
 
+// The indices of a sample of some pixels of the region in FrameData::compensation_paths.
+void list_paths(const Settings& settings, const SharedTile& tile, std::uint32_t sample, std::uint32_t count,
+                const std::uint8_t* in_region, std::uint32_t* pixel) {
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const std::uint32_t column = tile.column + in_region[i] % kRegionSide - kTakenBefore,
+                        row = tile.row + in_region[i] / kRegionSide - kTakenBefore;
+    pixel[i] = (sample * settings.height + row) * settings.width + column;
+  }
+}
+
 // Adds what the pixels gather, those of the list from `begin`, to the region, which lacks it.
-void gather(Tracer* tracer, const SharedTile& tile, const PixelList& pixels, std::uint32_t begin, std::uint32_t count,
-            const FirstHits& first, Region* region) {
+void gather(Tracer* tracer, const SharedTile& tile, std::uint32_t sample, const PixelList& pixels, std::uint32_t begin,
+            std::uint32_t count, const FirstHits& first, Region* region) {
   const FrameData& frame = *tracer->frame;
   const Surface* surface[kPacketMax];
   std::uint8_t place[kPacketMax], in_region[kPacketMax];
@@ -127,10 +137,13 @@ void gather(Tracer* tracer, const SharedTile& tile, const PixelList& pixels, std
                                                             (tile.row + row - kTakenBefore) % kPatternSide));
   }
   if (found == 0) return;
+  std::uint32_t path[kPacketMax];
+  if (frame.compensation_paths) list_paths(frame.settings, tile, sample, found, in_region, path);
+  const InterleavedPoints points = {found, surface, place, frame.compensation_paths ? path : nullptr};
   for (int source = 0; source < kInterleavedSourceCount; ++source) {
     if (!has(frame.mask, kInterleavedSources[source]->effect)) continue;
-    kInterleavedSources[source]->gather(frame, {found, surface, place}, &tracer->stats,
-                                        &tracer->rays[static_cast<int>(RayKind::shadow)], light);
+    kInterleavedSources[source]->gather(frame, points, &tracer->stats, &tracer->rays[static_cast<int>(RayKind::shadow)],
+                                        light);
     for (std::uint32_t i = 0; i < found; ++i) region->pixel[in_region[i]].light[source] = light[i];
   }
 }
@@ -206,10 +219,10 @@ void trace_sample(Tracer* tracer, const SharedTile& tile, std::uint32_t sample, 
   for (std::uint32_t begin = 0; begin < lacking.count; begin += kPacketMax) {
     const std::uint32_t count = std::min(lacking.count - begin, kPacketMax);
     find_first_hits(tracer, tile, lacking, begin, count, offset, false, &first);
-    gather(tracer, tile, lacking, begin, count, first, region);
+    gather(tracer, tile, sample, lacking, begin, count, first, region);
   }
   find_first_hits(tracer, tile, tile.wanted, 0, tile.wanted.count, offset, true, &first);
-  gather(tracer, tile, tile.wanted, 0, tile.wanted.count, first, region);
+  gather(tracer, tile, sample, tile.wanted, 0, tile.wanted.count, first, region);
   link_neighbours(region);
   add_shared_light(frame, tile.wanted, region, &first);
   tracer->tile_shadows = first.knows_shadows ? &first.shadows : nullptr;

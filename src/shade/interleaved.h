@@ -25,6 +25,7 @@ struct InterleavedPoints {
   std::uint32_t count;
   const Surface* const* surface;
   const std::uint8_t* place;
+  const std::uint32_t* pixel = nullptr;  // its index in FrameData::compensation_paths; null: none is kept
 };
 // What arrives from a pixel's sixteenth of the sources, or the sum over pixels: with and without shadows.
 struct InterleavedLight {

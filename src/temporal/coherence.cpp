@@ -5,6 +5,7 @@
 
 #include "base/check.h"
 #include "shade/interleaved.h"
+#include "temporal/tile_search.h"
 
 namespace pocketray {
 namespace {
@@ -33,6 +34,10 @@ bool same_virtual_lights(const VirtualLights& a, const VirtualLights& b) {
 
 std::uint32_t tiles_along(std::uint32_t pixels) { return (pixels + kChangeTileSide - 1) / kChangeTileSide; }
 
+bool keeps_paths(EffectMask mask, const CoherencePlan& plan) {
+  return plan.compensated && has(mask, Effect::instant_radiosity);
+}
+
 std::uint32_t known_lights(const CoherencePlan& plan) {
   return plan.tables_only ? 0 : std::min(plan.light_points, kKnownLights);
 }
@@ -49,6 +54,8 @@ std::size_t coherence_need(const Scene& scene, EffectMask mask, const CoherenceP
   bytes = size_sum(bytes, arena_need<TileHits>(tiles) + arena_need<std::uint64_t>(tiles));
   if (is_interleaved(mask)) bytes = size_sum(bytes, arena_need<std::uint64_t>(tiles));
   if (has(mask, Effect::instant_radiosity)) bytes = size_sum(bytes, arena_need<VirtualLights>(1));
+  if (keeps_paths(mask, plan))
+    bytes = size_sum(bytes, size_sum(arena_need(pixels * plan.samples * sizeof(KeptPath)), arena_need<Box>(tiles)));
   bytes = size_sum(bytes, arena_need<KnownShadows>(tiles * plan.samples * known_lights(plan)));
   bytes = size_sum(bytes, arena_need<LightPoint>(plan.light_points) + arena_need<ChangeCounts>(plan.threads));
   bytes = size_sum(bytes, arena_need<LightPolygon>(plan.area_lights));
@@ -76,6 +83,10 @@ void make_coherence(const FrameData& frame, const CoherencePlan& plan, Arena* ke
   c->changed = arena_array_zeroed<std::uint64_t>(keep, tiles);
   if (is_interleaved(frame.mask)) c->given = arena_array_zeroed<std::uint64_t>(keep, tiles);
   if (has(frame.mask, Effect::instant_radiosity)) c->virtual_lights = arena_array<VirtualLights>(keep, 1);
+  if (keeps_paths(frame.mask, plan)) {
+    c->paths = arena_array<KeptPath>(keep, static_cast<std::size_t>(pixel_count(plan)) * plan.samples);
+    c->path_ends = arena_array<Box>(keep, tiles);
+  }
   c->shadows = arena_array_zeroed<KnownShadows>(keep, tiles * plan.samples * known_lights(plan));
   c->lights = arena_array<LightPoint>(keep, plan.light_points);
   c->light_polygons = arena_array<LightPolygon>(keep, plan.area_lights);
@@ -94,7 +105,8 @@ bool fits(const Coherence& c, const FrameData& frame) {
   return frame.settings.samples_per_pixel <= c.plan.samples && frame.lights.count <= c.plan.light_points &&
          frame.light_polygons.count <= c.plan.area_lights && (has_tables || !keeps_tables(frame.mask, c.plan)) &&
          (c.given.count > 0 || !is_interleaved(frame.mask)) &&
-         (c.virtual_lights.count > 0 || !has(frame.mask, Effect::instant_radiosity));
+         (c.virtual_lights.count > 0 || !has(frame.mask, Effect::instant_radiosity)) &&
+         (c.paths.count > 0 || !is_compensated(frame.settings, frame.mask));
 }
 
 void recolor(Coherence* c, std::uint32_t material, const Material& was, const Material& is, const Scene& scene) {
@@ -124,6 +136,11 @@ bool follow_frame(Coherence* c, const FrameData& frame, const char** why) {
     *why = "a light changed, and with it the selection of the others";
     lights_changed = false;
   }
+  const bool is_compensated = pocketray::is_compensated(frame.settings, frame.mask);
+  if (!*why && is_compensated && (lights_changed || c->recoloring.any)) {
+    *why = "a light or a surface changed, and with it what compensation finds";
+    lights_changed = false;
+  }
   c->search = {&frame,
                &c->moving,
                c->tables.words.count ? &c->tables : nullptr,
@@ -133,7 +150,9 @@ bool follow_frame(Coherence* c, const FrameData& frame, const char** why) {
                lights_changed,
                c->shadows,
                known_lights(c->plan),
-               c->changed.count};
+               c->changed.count,
+               is_compensated ? c->paths.data : nullptr,
+               c->path_ends.data};
   if (*why) {
     std::fill(c->row_known.begin(), c->row_known.end(), std::uint8_t(0));
     if (c->tables.words.count) reset_tables(frame.accel.bounds, &c->tables);
@@ -249,6 +268,7 @@ void start_recording(Coherence* c, FrameData* frame, Array<Tracer> tracers) {
   CHECK_LE(frame->settings.samples_per_pixel, c->plan.samples);
   CHECK(frame->accel_info != &c->observed);  // it would ask itself
   if (!c->plan.tables_only) frame->first_hits = c->first_hits.data;
+  if (is_compensated(frame->settings, frame->mask)) frame->compensation_paths = c->paths.data;
   if (c->tables.words.empty()) return;
   for (std::uint32_t i = 0; i < tracers.count; ++i) {
     c->observers[i] = MarkingObserver();
@@ -264,6 +284,7 @@ void start_recording(Coherence* c, FrameData* frame, Array<Tracer> tracers) {
 
 void stop_recording(const AccelInfo& accel_info, FrameData* frame, Array<Tracer> tracers) {
   frame->first_hits = nullptr;
+  frame->compensation_paths = nullptr;
   frame->accel_info = &accel_info;
   frame->first_rays = &accel_info;
   frame->ray_by_ray = false;
@@ -304,8 +325,12 @@ void measure_tiles(Coherence* c, const FrameData& frame, std::uint32_t tile_row,
   if (c->plan.tables_only || known == 0) return;
   for (std::uint32_t i = 0; i < c->tile_columns; ++i) {
     const std::uint32_t tile = tile_row * c->tile_columns + i;
-    if (all || c->changed[tile])
-      c->tiles[tile] = measure_tile(frame, c->first_hits.data, i * kChangeTileSide, tile_row * kChangeTileSide, known);
+    const PixelRect pixels = {i * kChangeTileSide, tile_row * kChangeTileSide, kChangeTileSide, kChangeTileSide};
+    if (all || c->changed[tile]) {
+      c->tiles[tile] = measure_tile(frame, c->first_hits.data, pixels.column, pixels.row, known);
+      if (is_compensated(frame.settings, frame.mask))
+        c->path_ends[tile] = measure_path_ends(frame, c->first_hits.data, c->paths.data, pixels, known);
+    }
   }
 }
 

@@ -13,7 +13,7 @@
 
 namespace pocketray {
 
-// Whether pixels have rays that are neither known nor recorded.
+// Whether first hits have rays of compensation.
 constexpr bool is_compensated(const Quality& quality, EffectMask mask) {
   return has(mask, Effect::instant_radiosity) && quality.compensation == Compensation::rays;
 }
@@ -28,6 +28,7 @@ struct CoherencePlan {
   std::uint32_t table_side;
   bool tables_only;           // the paper's way: every ray in tables, whole blocks traced again
   std::uint32_t recolorable;  // materials that may change; 0: none does
+  bool compensated;           // virtual lights, if there are any
 };
 
 struct Coherence {
@@ -44,6 +45,8 @@ struct Coherence {
   Array<LightPoint> lights;      // of the last frame
   Array<LightPolygon> light_polygons;
   Array<VirtualLights> virtual_lights;  // one, if there are any
+  Array<KeptPath> paths;                // as first_hits, of rays of compensation; empty: there are none
+  Array<Box> path_ends;                 // of each tile
   Array<MarkingObserver> observers;
   Array<ChangeCounts> counts;  // for each thread
   Array<Span> spans;           // some rows of tiles as spans

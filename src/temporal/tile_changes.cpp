@@ -97,7 +97,9 @@ std::uint64_t find_changes_of(const ChangeSearch& search, std::uint32_t tile, co
                      [&](const LightRun&, std::uint32_t, bool) { return !(any = true); });
   SourceSets sources;
   if (!is_empty(suspects.sources)) sources = suspect_sources(search, hits, &suspects.sources);
-  if (!any && is_empty(sources)) return marked;
+  PathSuspects paths;
+  if (suspects.paths.any) paths = suspect_paths(search, hits, search.path_ends[tile], &suspects.paths);
+  if (!any && is_empty(sources) && !paths.any) return marked;
   const TilePixels pixels = pixels_of(frame.settings, column, row, known_pixels);
   if (pixels.count == 0) return 0;
   TileSearch t(search, pixels, marked, *given, counts, stats);
@@ -107,6 +109,7 @@ std::uint64_t find_changes_of(const ChangeSearch& search, std::uint32_t tile, co
     if (seen) find_changed_hits(&t, hits.t_max);
     find_receivers(&t);
     find_other_light(&t, sources);
+    if (paths.any) find_other_paths(&t, sample, hits, paths);
     KnownShadows* known = known_shadows(search, sample, tile);
     for_each_suspect(search, hits, suspects.lights, [&](const LightRun& run, std::uint32_t light, bool has_changed) {
       const bool is_kept = light < search.known_lights;
@@ -142,16 +145,19 @@ void forget_shadows(const ChangeSearch& search, std::uint32_t tile, std::uint64_
 
 Suspects suspects_of(const ChangeSearch& search, std::uint32_t begin, std::uint32_t end) {
   TileHits all;
+  Box ends = empty_box();
   for (std::uint32_t tile = begin; tile < end; ++tile) {
     const TileHits& hits = search.tiles[tile];
     all.points = merge(all.points, hits.points);
     all.room = std::max(all.room, hits.room), all.t_max = std::max(all.t_max, hits.t_max);
+    if (search.paths) ends = merge(ends, search.path_ends[tile]);
   }
   const std::uint32_t column = begin % search.tile_columns * kChangeTileSide,
                       row = begin / search.tile_columns * kChangeTileSide;
   Suspects suspects = {};
   suspects.seen = sees_change(search, {column, row, (end - begin) * kChangeTileSide, kChangeTileSide}, all.t_max);
   suspects.sources = suspect_sources(search, all, nullptr);
+  if (search.paths) suspects.paths = suspect_paths(search, all, ends, nullptr);
   for_each_suspect(search, all, ~std::uint64_t(0), [&](const LightRun&, std::uint32_t light, bool) {
     if (light < kSuspectLights) suspects.lights |= std::uint64_t(1) << light;
     return light < kSuspectLights;  // they come in ascending order

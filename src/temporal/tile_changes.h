@@ -1,6 +1,7 @@
 // The pixels of a tile whose value can differ from the last frame: rays that may be affected are found by beams around
 // the tile's rays, then tested one by one against the moving geometry alone, where it was and where it is.
 #pragma once
+#include "shade/compensation.h"
 #include "shade/interleaved.h"
 #include "shade/tile_shadows.h"
 #include "temporal/moving_geometry.h"
@@ -44,6 +45,8 @@ struct ChangeSearch {
   bool lights_changed;          // any of them
   Array<KnownShadows> shadows;  // for each sample, tile and light of the first `known_lights`
   std::uint32_t known_lights, tile_count;
+  const KeptPath* paths;  // of each first hit; null: there are none
+  const Box* path_ends;   // of each tile
 };
 
 inline KnownShadows* known_shadows(const ChangeSearch& s, std::uint32_t sample, std::uint32_t tile) {
@@ -77,12 +80,21 @@ inline bool is_empty(const SourceSets& sets) {
   return true;
 }
 
+// Rays of compensation, and shadow rays from their ends, that may meet a change.
+struct PathSuspects {
+  bool first = false;        // the rays themselves
+  bool any = false;          // these or shadow rays
+  std::uint64_t lights = 0;  // bit i for light i, of the first ones
+  SourceSet virtual_lights;
+};
+
 // What some tiles next to each other may have rays to that meet a change: the camera, interleaved sources, and of the
 // first lights, bit i for light i.
 struct Suspects {
   bool seen;
   std::uint64_t lights;
   SourceSets sources;
+  PathSuspects paths;
 };
 constexpr std::uint32_t kSuspectLights = 64;  // further ones are always suspect
 constexpr std::uint32_t kSuspectTiles = 8;    // looked at together

@@ -89,6 +89,14 @@ void find_changed_shadows(TileSearch* t, const LightRun& run, std::uint32_t ligh
 
 // Those of the interleaved sources to which a ray from the tile may meet a change; `among`: null for all of them.
 SourceSets suspect_sources(const ChangeSearch& search, const TileHits& hits, const SourceSets* among);
+// The same of rays of compensation and the lights that they find.
+PathSuspects suspect_paths(const ChangeSearch& search, const TileHits& hits, const Box& ends,
+                           const PathSuspects* among);
+// A box around the ends of rays of compensation of the tile's pixels `known`.
+Box measure_path_ends(const FrameData& frame, const Hit* first_hits, const KeptPath* paths, const PixelRect& tile,
+                      std::uint64_t known);
+// Adds the pixels that compensation may give other light to `given` and to `changed`.
+void find_other_paths(TileSearch* t, std::uint32_t sample, const TileHits& hits, const PathSuspects& suspects);
 // Adds the pixels that may give other light to `given`: without a first hit of the last frame, or by their rays.
 void find_other_light(TileSearch* t, const SourceSets& suspects);
 

@@ -215,6 +215,7 @@ EditScript begin_script(std::uint32_t features, std::uint64_t seed) {
   if (next_u32(&s.rng) % 3 == 0) {
     plain.indirect = indirect_choice(Effect::instant_radiosity);
     plain.virtual_lights = 1 + next_u32(&s.rng) % (next_u32(&s.rng) % 2 ? 4 : 40);  // few of them rest more often
+    if (seed % 2) plain.compensation = Compensation::rays;
   }
   const AccelInfo* const accels[] = {nullptr, nullptr,
                                      kAccelList[next_u32(&s.rng) % (sizeof kAccelList / sizeof kAccelList[0])]};

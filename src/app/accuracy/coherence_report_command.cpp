@@ -43,8 +43,7 @@ Status plan_way(Way way, const ReportOptions& o, std::uint32_t table, Renderer* 
         "--compare traces single pixels, but with virtual lights or shadows from the environment they depend on "
         "others: add --indirect none, or --environment-shadows 0");
   if (way == Way::frame_by_frame || renderer->coherence_state.planned) return success();
-  if (is_compensated(*settings, renderer->effects.mask) ||
-      (renderer->effects.mask & (way == Way::by_tables ? kNotInTables : kNotFollowed)) != 0)
+  if ((renderer->effects.mask & (way == Way::by_tables ? kNotInTables : kNotFollowed)) != 0)
     return failure("coherence does not follow these frames: %s", renderer->coherence_state.unplanned_because);
   const CoherencePlan plan = coherence_plan(*settings, renderer->light_point_count_max, renderer->light_polygons.count);
   std::size_t bytes = renderer->memory.total_bytes + coherence_need(renderer->scene, renderer->effects.mask, plan) +
