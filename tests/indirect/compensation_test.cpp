@@ -8,6 +8,7 @@
 
 #include "base/fmath.h"
 #include "effect/setting_list.h"
+#include "instant_light.h"
 #include "support/divided_picture.h"
 #include "support/generated_scene.h"
 
@@ -35,19 +36,9 @@ struct Cell : GeneratedScene {
 };
 
 Settings cell_settings(std::uint32_t virtual_lights, Compensation compensation) {
-  Settings settings;
-  settings.width = 40, settings.height = 28;
-  settings.light_tolerance = 0;
-  settings.indirect = indirect_choice(Effect::instant_radiosity);
-  settings.virtual_lights = virtual_lights, settings.compensation = compensation;
+  Settings settings = instant_settings(virtual_lights);
+  settings.light_tolerance = 0, settings.compensation = compensation;
   return settings;
-}
-
-std::unique_ptr<TestRenderer> rendered(const Scene& scene, const Settings& settings) {
-  std::unique_ptr<TestRenderer> t = make_renderer(scene, settings);
-  Status status = render_frame(&t->renderer, 0);
-  REQUIRE_MESSAGE(status.ok, status.message);
-  return t;
 }
 
 double mean_of(const Scene& scene, const Settings& settings) {

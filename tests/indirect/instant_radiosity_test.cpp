@@ -8,6 +8,7 @@
 #include "base/fmath.h"
 #include "effect/setting_list.h"
 #include "indirect/instant_radiosity.h"
+#include "instant_light.h"
 #include "scene/builtin_helpers.h"
 #include "support/divided_picture.h"
 #include "support/generated_scene.h"
@@ -40,20 +41,6 @@ struct Room : GeneratedScene {
     bind();
   }
 };
-
-Settings instant(std::uint32_t lights, std::uint32_t width = 40, std::uint32_t height = 28) {
-  Settings settings;
-  settings.width = width, settings.height = height;
-  settings.indirect = indirect_choice(Effect::instant_radiosity), settings.virtual_lights = lights;
-  return settings;
-}
-
-std::unique_ptr<TestRenderer> rendered(const Scene& scene, const Settings& settings) {
-  std::unique_ptr<TestRenderer> t = make_renderer(scene, settings);
-  Status status = render_frame(&t->renderer, 0);
-  REQUIRE_MESSAGE(status.ok, status.message);
-  return t;
-}
 
 const VirtualLights& lights_of(const TestRenderer& t) { return *virtual_lights_of(t.renderer.frame.indirect); }
 
@@ -98,7 +85,7 @@ TEST_CASE("hard_42_virtual_lights_have_the_reflected_power") {
   Room room(false);
   for (std::uint32_t count : {32u, 64u, 128u, 256u, 512u}) {
     CAPTURE(count);
-    std::unique_ptr<TestRenderer> t = rendered(room.scene, instant(count));
+    std::unique_ptr<TestRenderer> t = rendered(room.scene, instant_settings(count));
     const VirtualLights& lights = lights_of(*t);
     CHECK(lights.count <= count * 9 / 8);
     CHECK(lights.count >= count * 7 / 8);
@@ -118,9 +105,9 @@ TEST_CASE("instant_radiosity_fills_a_room") {
     for (const Vec3& p : t->renderer.image) sum += static_cast<double>(p.y);
     return sum / t->renderer.image.count;
   };
-  Settings without = instant(512);
+  Settings without = instant_settings(512);
   without.indirect = IndirectChoice::none;
-  double direct = mean(without), all = mean(instant(512));
+  double direct = mean(without), all = mean(instant_settings(512));
   CAPTURE(direct);
   // Reflected light is nearly even: (ρ / π) Φ / A × ρ / (1 − ρ).
   double expected = kAlbedo / kPi * (4 * kPi * kPi / 24) * kAlbedo / (1 - kAlbedo);
@@ -134,7 +121,7 @@ TEST_CASE("instant_radiosity_does_not_depend_on_spans") {
   Room room(true);
   for (std::uint32_t variant = 0; variant < 4; ++variant) {
     CAPTURE(variant);
-    Settings settings = instant(64);
+    Settings settings = instant_settings(64);
     if (variant == 1) settings.samples_per_pixel = 2;
     if (variant == 2) settings.compensation = Compensation::rays;
     if (variant == 3) {
@@ -170,7 +157,7 @@ TEST_CASE("instant_radiosity_does_not_depend_on_spans") {
 // Goal: no epsilon depends on the scene's size (HARDCASES row 29). Method: the same scene scaled by powers of two.
 TEST_CASE("instant_radiosity_of_scaled_scenes_is_the_same") {
   Room room(true);
-  Settings settings = instant(64);
+  Settings settings = instant_settings(64);
   settings.compensation = Compensation::rays;
   std::unique_ptr<TestRenderer> t = rendered(room.scene, settings);
   std::vector<Vec3> image(t->renderer.image.begin(), t->renderer.image.end());
@@ -227,17 +214,17 @@ std::uint32_t lights_kept(const VirtualLights& a, const VirtualLights& b) {
 TEST_CASE("instant_radiosity_keeps_lights_whose_paths_nothing_crosses") {
   for (bool sun : {false, true}) {
     CAPTURE(sun);
-    std::unique_ptr<TestRenderer> first = rendered(RoomWithTurningBoxes(sun, 0, 0).scene, instant(64));
+    std::unique_ptr<TestRenderer> first = rendered(RoomWithTurningBoxes(sun, 0, 0).scene, instant_settings(64));
     const VirtualLights& before = lights_of(*first);
     REQUIRE(before.count > 40);
     for (double turn = 0.1; turn < 3; turn += 0.1) {
       CAPTURE(turn);
-      std::unique_ptr<TestRenderer> turned = rendered(RoomWithTurningBoxes(sun, turn, 0).scene, instant(64));
+      std::unique_ptr<TestRenderer> turned = rendered(RoomWithTurningBoxes(sun, turn, 0).scene, instant_settings(64));
       const VirtualLights& now = lights_of(*turned);
       REQUIRE(now.count == before.count);
       CHECK(std::equal(now.light, now.light + now.count, before.light, same_light));
     }
-    std::unique_ptr<TestRenderer> outside = rendered(RoomWithTurningBoxes(sun, 0, 1.0f).scene, instant(64));
+    std::unique_ptr<TestRenderer> outside = rendered(RoomWithTurningBoxes(sun, 0, 1.0f).scene, instant_settings(64));
     std::uint32_t kept = lights_kept(before, lights_of(*outside));
     CHECK(kept > before.count / 4);
     if (!sun) CHECK(kept < before.count);
@@ -248,7 +235,7 @@ TEST_CASE("instant_radiosity_keeps_lights_whose_paths_nothing_crosses") {
 // the animation of seesaw; between frames, a walk or two changes, of which each leaves nine lights at most.
 TEST_CASE("instant_radiosity_replaces_lights_one_by_one") {
   auto built = build_builtin("seesaw");
-  std::unique_ptr<TestRenderer> t = make_renderer(built->scene, instant(64, 8, 6));
+  std::unique_ptr<TestRenderer> t = make_renderer(built->scene, instant_settings(64, 8, 6));
   VirtualLights last;
   std::uint32_t changes = 0;
   for (int frame = 0; frame <= 350; ++frame) {
@@ -270,7 +257,7 @@ TEST_CASE("instant_radiosity_replaces_lights_one_by_one") {
 // server would differ. Method: renderers that begin otherwise, then render the same frame, of a scene with a lamp.
 TEST_CASE("instant_radiosity_sends_as_many_walks_whatever_came_before") {
   auto built = build_builtin("cornell");
-  const Settings settings = instant(512, 8, 6);
+  const Settings settings = instant_settings(512, 8, 6);
   std::unique_ptr<TestRenderer> t = make_renderer(built->scene, settings);
   REQUIRE(render_frame(&t->renderer, 4).ok);
   Settings first = settings;
@@ -290,20 +277,20 @@ TEST_CASE("instant_radiosity_finds_light_that_missed_the_scene_at_first") {
   Light* light = &room.lights[0];
   light->kind = LightKind::spot, light->cos_inner = 0.9f, light->cos_outer = 0.5f;
   light->position = {50, 0, 0}, light->direction = {1, 0, 0};
-  std::unique_ptr<TestRenderer> t = rendered(room.scene, instant(64));
+  std::unique_ptr<TestRenderer> t = rendered(room.scene, instant_settings(64));
   REQUIRE(lights_of(*t).count == 0);
   light->position = {0, 0, 0};
   t->renderer.lit_mask = ~t->renderer.effects.mask;
   REQUIRE(render_frame(&t->renderer, 0).ok);
-  std::unique_ptr<TestRenderer> fresh = rendered(room.scene, instant(128));
+  std::unique_ptr<TestRenderer> fresh = rendered(room.scene, instant_settings(128));
   REQUIRE(lights_of(*t).count >= 64);
   CHECK(lights_of(*t).geometry_max > 0.5f * lights_of(*fresh).geometry_max);
 }
 
 // Goal: the same where the moving object is what ends the scene. Method: boxes rise by a hundredth over the room.
 TEST_CASE("instant_radiosity_keeps_lights_as_the_bounds_change") {
-  std::unique_ptr<TestRenderer> first = rendered(RoomWithTurningBoxes(true, 0, 1.7f).scene, instant(64)),
-                                second = rendered(RoomWithTurningBoxes(true, 0, 1.71f).scene, instant(64));
+  std::unique_ptr<TestRenderer> first = rendered(RoomWithTurningBoxes(true, 0, 1.7f).scene, instant_settings(64)),
+                                second = rendered(RoomWithTurningBoxes(true, 0, 1.71f).scene, instant_settings(64));
   REQUIRE(first->renderer.frame.accel.bounds.high.y != second->renderer.frame.accel.bounds.high.y);
   const VirtualLights &a = lights_of(*first), &b = lights_of(*second);
   CHECK(lights_kept(a, b) > a.count / 2);
@@ -312,7 +299,7 @@ TEST_CASE("instant_radiosity_keeps_lights_as_the_bounds_change") {
 // Goal: coherence by tables of all rays, which do not tell whose light a pixel takes, stays off, and says why.
 TEST_CASE("instant_radiosity_is_not_followed_by_tables") {
   Room room(true);
-  Settings settings = instant(64);
+  Settings settings = instant_settings(64);
   settings.coherence = CoherenceMode::on;
   CHECK(rendered(room.scene, settings)->renderer.coherence_state.planned);
   settings.coherence_by_tables = true;
@@ -325,7 +312,7 @@ TEST_CASE("instant_radiosity_is_not_followed_by_tables") {
 // Goal: virtual lights that memory was not planned for are refused.
 TEST_CASE("instant_radiosity_is_planned_or_refused") {
   Room room(false);
-  Settings settings = instant(64);
+  Settings settings = instant_settings(64);
   settings.indirect = IndirectChoice::none;
   std::unique_ptr<TestRenderer> t = rendered(room.scene, settings);
   Status status = change_settings(&t->renderer, [&] {
@@ -345,7 +332,7 @@ TEST_CASE("instant_radiosity_is_shadowed") {
   room.cameras[0].eye = {0, 0, -0.5f}, room.cameras[0].target = {0, 0, -1};
   room.bind();
   auto brightest = [&](EffectMask off) {
-    Settings settings = instant(128);
+    Settings settings = instant_settings(128);
     settings.forced_off = off;
     std::unique_ptr<TestRenderer> t = rendered(room.scene, settings);
     float most = 0;
@@ -359,7 +346,7 @@ TEST_CASE("instant_radiosity_is_shadowed") {
 // way. Method: an empty room, with shadows and without, has the same bits.
 TEST_CASE("instant_radiosity_of_an_empty_room_needs_no_shadows") {
   Room room(false);
-  Settings settings = instant(128), without = settings;
+  Settings settings = instant_settings(128), without = settings;
   without.forced_off = bit(Effect::shadow);
   std::unique_ptr<TestRenderer> a = rendered(room.scene, settings), b = rendered(room.scene, without);
   std::size_t different = 0;
@@ -380,7 +367,7 @@ TEST_CASE("instant_radiosity_of_many_lights_shares_rays") {
     return static_cast<double>(sum);
   };
   for (std::uint32_t count : {64u, 512u}) {
-    Settings settings = instant(count);
+    Settings settings = instant_settings(count);
     std::unique_ptr<TestRenderer> shared = rendered(room.scene, settings);
     settings.light_tolerance = 0;
     std::unique_ptr<TestRenderer> every = rendered(room.scene, settings);

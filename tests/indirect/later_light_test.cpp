@@ -6,6 +6,7 @@
 
 #include "base/fmath.h"
 #include "effect/setting_list.h"
+#include "instant_light.h"
 #include "shade/filters.h"
 #include "shade/trace_spans.h"
 #include "shade/virtual_light.h"
@@ -47,18 +48,9 @@ struct RoomBehindPane : GeneratedScene {
 };
 
 Settings instant(std::uint32_t lights, float tolerance) {
-  Settings settings;
-  settings.width = 40, settings.height = 28;
-  settings.indirect = indirect_choice(Effect::instant_radiosity), settings.virtual_lights = lights;
+  Settings settings = instant_settings(lights);
   settings.light_tolerance = tolerance, settings.cut_off_levels = 0;
   return settings;
-}
-
-std::unique_ptr<TestRenderer> rendered(const Scene& scene, const Settings& settings) {
-  std::unique_ptr<TestRenderer> t = make_renderer(scene, settings);
-  Status status = render_frame(&t->renderer, 0);
-  REQUIRE_MESSAGE(status.ok, status.message);
-  return t;
 }
 
 Surface surface_along(const FrameData& frame, const Ray& ray) {

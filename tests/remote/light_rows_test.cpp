@@ -21,12 +21,12 @@ SplitRigOptions balanced_rig(SplitKind split) {
 // Time of the last frames of a turning camera.
 double settled_ns(SplitRig* rig) {
   double sum = 0;
-  for (int i = 0; i < 30; ++i) {
+  for (int i = 0; i < 22; ++i) {
     turn(&rig->device->renderer, 0.5f);
     rig->frame(0);
-    if (i >= 20) sum += rig->client.share.measured_ns;
+    if (i >= 16) sum += rig->client.share.measured_ns;
   }
-  return sum / 10;
+  return sum / 6;
 }
 
 }  // namespace
