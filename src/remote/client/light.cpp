@@ -122,9 +122,12 @@ bool wants_map(const Client& client) {
   return !has_map || l.rests || frame - l.last_asked >= client.options.light.every;
 }
 
+// With what its cost is worth, where the user weighs that.
 double predict_ns(Client* client, const RowsOfDevice& rows, const Smoothed& error) {
   const SplitProblem problem = make_problem(&client->model, client->options.wish, rows);
-  return static_cast<double>(find_split(problem, &client->workspace).time_ns) * value_or(error, 1);
+  const Split split = find_split(problem, &client->workspace);
+  return static_cast<double>(split.time_ns) * value_or(error, 1) +
+         (problem.weigh_cost ? static_cast<double>(split.cost) : 0);
 }
 
 // What frames shared by rows and by effect would take, by the cost model.
