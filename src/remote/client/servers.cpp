@@ -87,7 +87,7 @@ Status check(const ServersOptions& o) {
   if (o.split != "rows" && o.addresses.empty())
     return failure("--split shares frames with render servers: add --server");
   if (o.split != "rows" && o.device_share != kBestShare)
-    return failure("--share divides rows: drop it, or --split %s", o.split.c_str());
+    return failure("--share and --split %s both say what the device renders: drop one of them", o.split.c_str());
   bool any = o.price > 0 || o.energy_pixel > 0 || o.energy_byte > 0 || o.cost_weight_ms > 0 || o.cost_cap > 0;
   if (o.addresses.empty() && (any || o.device_share != kBestShare))
     return failure("shares, prices and energies apply to render servers: add --server");
