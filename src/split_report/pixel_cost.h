@@ -8,7 +8,8 @@ namespace pocketray {
 Status measure_pixel_ns(Renderer* renderer, double* ns);
 
 // The same of frames shared by effect, as the device has them: with its own indirect light, and to add that of a map
-// with a light every `pitch` pixels. 0: frames of the renderer's settings cannot be shared so. They are kept.
+// with a light every `pitch` pixels. 0: frames of the renderer's settings cannot be shared so. The settings are
+// restored.
 Status measure_own_light_ns(Renderer* renderer, std::uint32_t pitch, double* ns);
 
 }  // namespace pocketray

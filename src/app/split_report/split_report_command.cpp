@@ -32,17 +32,20 @@ struct ReportOptions {
   bool no_paper = false;
 };
 
-// What a pixel costs the device in frames shared by effect, where these are possible.
+// What a pixel costs the device in frames shared by effect, where these are possible. here_ns: of a whole pixel on this
+// machine; 0: not measured.
 Status make_own_light(double here_ns, SplitSetup* setup) {
   double own_ns;
   RETURN_IF_ERROR(measure_own_light_ns(setup->device, kLightPitch, &own_ns));
-  if (own_ns > 0) setup->own_light_ns = setup->device_ns * own_ns / here_ns;
+  if (own_ns <= 0) return success();
+  if (here_ns <= 0) RETURN_IF_ERROR(measure_pixel_ns(setup->device, &here_ns));
+  setup->own_light_ns = setup->device_ns * own_ns / here_ns;
   return success();
 }
 
 Status make_setup(const ReportOptions& o, const platform::Device& device, Renderer* renderer, SplitSetup* setup) {
   double here_ns = 0;
-  RETURN_IF_ERROR(measure_pixel_ns(renderer, &here_ns));
+  if (o.device_ns <= 0 || o.server_ns <= 0) RETURN_IF_ERROR(measure_pixel_ns(renderer, &here_ns));
   setup->device = renderer;
   setup->format = device.bits_per_pixel == 16 ? WireFormat::rgb565 : WireFormat::rgb888;
   setup->line.bytes_per_second = device.link_bytes_per_second;
@@ -237,7 +240,7 @@ void print_extras(const Extras& extras) {
   std::printf("one such server and many such devices, each with its own best share at the server's price\n");
   std::printf("  %-16s %6s %14s %14s\n", "clients", "m", "ms per frame", "price");
   for (const ClientsRow& row : extras.clients)
-    std::printf("  %-14u %6.3f %14.2f %14.2f\n", row.count, row.m, row.ms, row.price);
+    std::printf("  %-16u %6.3f %14.2f %14.2f\n", row.count, row.m, row.ms, row.price);
 }
 
 Status write_files(const ReportOptions& o, const SplitSetup& setup, const SplitFigures& figures, const Extras& extras) {
@@ -330,7 +333,8 @@ void add_split_report_command(Command program, int* exit_status) {
   command.footer(
       "Device, link and servers are simulated on a virtual clock, so you need not start any. A busy machine affects "
       "only\n"
-      "the measured cost per pixel; fix that with --device-ns and --server-ns.\n"
+      "the measured cost per pixel, unless --device-ns and --server-ns give it, and the share of that cost which a\n"
+      "pixel without indirect light has.\n"
       "Try:  pocketray split-report cornell --emulate pi-zero -o .\n"
       "      pocketray split-report statue --emulate tablet --servers 3 --json -");
   add_scene_options(command, &o->common);

@@ -328,8 +328,7 @@ void begin_client_frame(Client* client, const Renderer& renderer, const FrameSta
   }
   client->held = !unchanged && any && wants_quiet(*client);
   begin_light_frame(client);
-  const bool shares_rows = !client->light.by_effect || client->light.shares_rows;
-  if (any && client->options.has_scene && !client->held && !unchanged && shares_rows) share_rows(client);
+  if (any && client->options.has_scene && !client->held && !unchanged && divides_rows(*client)) share_rows(client);
   advance_client(client, 0);
 }
 
@@ -364,8 +363,7 @@ void finish_device_rows(Client* client, std::uint32_t row_begin, std::uint32_t r
   CHECK_LT(row_begin, row_end);
   const double count = row_end - row_begin, pixels = static_cast<double>(pixel_count);
   CHECK_LE(pixel_count, std::uint64_t(row_end - row_begin) * client->settings.width);
-  const bool is_modelled = !client->light.by_effect || client->light.shares_rows;
-  for (std::uint32_t row = row_begin; row < row_end && is_modelled; ++row)
+  for (std::uint32_t row = row_begin; row < row_end && divides_rows(*client); ++row)
     observe_device_row(&client->model, row, static_cast<double>(ns) / count, pixels / (count * client->settings.width));
   client->device_ns += static_cast<double>(ns), client->device_pixels += pixel_count;
   finish_rows(&client->merge, row_begin, row_end);

@@ -10,6 +10,9 @@ inline std::uint32_t index_of(const Client& client, const RemoteServer* server) 
   return static_cast<std::uint32_t>(server - client.servers);
 }
 
+// Whether the frame's rows are divided among device and servers; otherwise the device has all of them.
+inline bool divides_rows(const Client& client) { return !client.light.by_effect || client.light.shares_rows; }
+
 // As the cost model takes a message's price.
 constexpr double price_ratio(std::uint16_t price) { return static_cast<double>(price) / kPriceUnit; }
 

@@ -223,8 +223,8 @@ void share_rows(Client* client) {
 void let_join(Client* client) {
   if (!client->options.has_scene) return ask_idle_servers(client);
   if (client->complete || client->unchanged) return;
+  if (!divides_rows(*client)) return ask_for_light(client);
   const bool by_effect = client->light.by_effect;
-  if (by_effect && !client->light.shares_rows) return ask_for_light(client);
   bool any = false;
   for (std::uint32_t i = 0; i < client->server_count; ++i) {
     if (!by_effect && client->servers[i].phase == ServerPhase::probing) finish_probe(client, &client->servers[i]);
