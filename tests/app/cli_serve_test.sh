@@ -126,7 +126,7 @@ if [ $# -eq 0 ] && "${run[@]}" --help | grep -q '^ *serve '; then  # not under a
     --coherence off --server "$address" --near-lossless -o near.ppm
   expect near_lossless_looks_the_same 0 '' compare alone-0007.ppm near-0007.ppm --fail-above 0.02
   expect_in_use verify_prints_its_odds 'of their pixels per frame checked, which catches one wrong row per frame with a probability of' \
-    render seesaw "${shared[@]}" --server "$address" --verify 9 -o verified.ppm
+    render seesaw "${shared[@]}" --emulate pi-zero --coherence off --server "$address" --verify 9 -o verified.ppm
   for value in 1.5 -0.5; do expect "share_$value" 1 '0 … 1' "${one[@]}" --server "$address" --share=$value; done
   expect share_nan 1 'finite number' "${one[@]}" --server "$address" --share=nan
   for option in price energy-pixel energy-byte cost-weight cost-cap; do
