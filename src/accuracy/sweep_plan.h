@@ -36,17 +36,4 @@ SweepPlan plan_sweep(const std::string& scene, const EffectPlan& effects, const 
                      const std::function<Status(const Settings&)>& can_be_had, double price_limit,
                      const std::vector<Settings>& ladder = {});
 
-// The figures of a point so far.
-struct PointFigures {
-  bool has_errors = false;
-  double flip = 0, flip_before = 0;
-  PictureErrors errors;
-  double instructions_per_pixel = kNotMeasured, bytes_per_frame = kNotMeasured;
-  std::vector<double> ns_per_pixel;  // one per round
-};
-
-// From the figures, one per point of the plan, derives sweep->measured with intervals and the front, and sweep->knobs
-// with slopes and prices. Takes the size of the picture and the reference's errors from *sweep.
-void sum_up(const SweepPlan& plan, const std::vector<PointFigures>& figures, Sweep* sweep);
-
 }  // namespace pocketray

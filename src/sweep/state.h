@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "accuracy/sweep_plan.h"
+#include "accuracy/sum_up.h"
 #include "session/report.h"
 
 namespace pocketray {

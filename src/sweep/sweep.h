@@ -3,7 +3,7 @@
 // configurations.
 #pragma once
 #include "accuracy/flip.h"
-#include "accuracy/sweep_plan.h"
+#include "accuracy/sum_up.h"
 #include "reference/reference.h"
 #include "session/open_scene.h"
 #include "session/progress.h"

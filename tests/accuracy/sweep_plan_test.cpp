@@ -1,5 +1,5 @@
 // The plan of a sweep and the summary of its figures.
-#include "accuracy/sweep_plan.h"
+#include "accuracy/sum_up.h"
 
 #include <doctest/doctest.h>
 
