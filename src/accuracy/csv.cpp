@@ -26,7 +26,7 @@ std::string sweep_csv(const Sweep& sweep) {
   std::string csv =
       "knob,value,ns_per_pixel,ns_per_pixel_low,ns_per_pixel_high,flip,rmse,rel_mse,p99,max,bias,psnr,pareto,"
       "flip_before,time_ratio,time_ratio_low,time_ratio_high,instructions_per_pixel,bytes_per_frame,default,missing,"
-      "note\n";
+      "note,flip_other,indirect\n";
   for (const Measured& m : sweep.measured) {
     bool there = m.missing.empty();
     const double figures[] = {m.ns_per_pixel.value, m.ns_per_pixel.low, m.ns_per_pixel.high, m.flip,
@@ -38,7 +38,8 @@ std::string sweep_csv(const Sweep& sweep) {
     const double further[] = {m.flip_before,     m.time_ratio.value,       m.time_ratio.low,
                               m.time_ratio.high, m.instructions_per_pixel, m.bytes_per_frame};
     for (double figure : further) csv += ',' + (there ? number(figure) : "");
-    csv += std::string(m.is_default ? ",1," : ",0,") + csv_field(m.missing) + ',' + csv_field(m.note) + '\n';
+    csv += std::string(m.is_default ? ",1," : ",0,") + csv_field(m.missing) + ',' + csv_field(m.note) + ',' +
+           (there ? number(m.flip_other) : "") + ',' + csv_field(m.indirect) + '\n';
   }
   return csv;
 }

@@ -29,6 +29,45 @@ std::vector<const Measured*> front_of(const Sweep& sweep) {
   return front;
 }
 
+bool knows_other(const Sweep& sweep) {
+  return std::any_of(sweep.measured.begin(), sweep.measured.end(),
+                     [](const Measured& m) { return has_figures(m) && std::isfinite(m.flip_other); });
+}
+
+double physical_flip(const Sweep& sweep, const Measured& m) {
+  return sweep.reference == "model" ? m.flip_other : m.flip;
+}
+
+namespace {
+
+bool compares_methods(const Sweep& sweep, const Measured& m) {
+  return has_figures(m) && std::isfinite(physical_flip(sweep, m)) && m.is_choice && !m.indirect.empty();
+}
+
+}  // namespace
+
+std::vector<std::string> methods_of(const Sweep& sweep) {
+  std::vector<std::string> methods;
+  for (const Measured& m : sweep.measured)
+    if (compares_methods(sweep, m) && std::find(methods.begin(), methods.end(), m.indirect) == methods.end())
+      methods.push_back(m.indirect);
+  return methods;
+}
+
+std::vector<const Measured*> method_front(const Sweep& sweep, const std::string& method) {
+  std::vector<const Measured*> all, front;
+  std::vector<double> cost, error;
+  for (const Measured& m : sweep.measured)
+    if (compares_methods(sweep, m) && m.indirect == method)
+      all.push_back(&m), cost.push_back(m.ns_per_pixel.value), error.push_back(physical_flip(sweep, m));
+  const std::vector<bool> is_on_front = pareto_front(cost, error);
+  for (std::size_t i = 0; i < all.size(); ++i)
+    if (is_on_front[i]) front.push_back(all[i]);
+  std::stable_sort(front.begin(), front.end(),
+                   [](const Measured* a, const Measured* b) { return a->ns_per_pixel.value < b->ns_per_pixel.value; });
+  return front;
+}
+
 KnobEnds ends_of(const Sweep& sweep, const std::string& knob) {
   KnobEnds ends;
   for (const Measured* m : values_of(sweep, knob)) {

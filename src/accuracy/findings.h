@@ -13,6 +13,16 @@ bool has_figures(const Measured& m);  // time and ꟻLIP
 // The front's configurations, fastest first. Lists the baseline once, not under each knob's name.
 std::vector<const Measured*> front_of(const Sweep& sweep);
 
+// Whether ꟻLIP is known against both kinds of reference.
+bool knows_other(const Sweep& sweep);
+// As seen from full light transport, whichever reference the sweep took.
+double physical_flip(const Sweep& sweep, const Measured& m);
+// The methods of indirect light that were measured, in the order of the sweep.
+std::vector<std::string> methods_of(const Sweep& sweep);
+// The configurations of a method that can be chosen between frames and that no other of the method beats both in time
+// and in ꟻLIP against full light transport, fastest first.
+std::vector<const Measured*> method_front(const Sweep& sweep, const std::string& method);
+
 // A knob's configurations with or without figures, in the order of its values.
 std::vector<const Measured*> values_of(const Sweep& sweep, const std::string& knob);
 

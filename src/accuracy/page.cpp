@@ -5,7 +5,9 @@
 #include "accuracy/findings.h"
 #include "accuracy/page_parts.h"
 #include "accuracy/page_tables.h"
+#include "accuracy/plot.h"
 #include "accuracy/strip.h"
+#include "accuracy/sum_up.h"
 #include "accuracy/text.h"
 
 namespace pocketray {
@@ -113,6 +115,26 @@ std::string knob_section(const Sweep& sweep, const PagePictures& pictures, const
          value_table(sweep, knob.name);
 }
 
+// The same front as seen from the other kind of reference.
+std::string other_section(const Sweep& sweep, const PagePictures& pictures) {
+  if (!knows_other(sweep)) return "";
+  const Sweep other = against_other(sweep);
+  const bool is_model = other.reference == "model";
+  return "<h2>The front against " + escaped(other.reference) + "</h2>\n<p>The same pictures, compared with " +
+         (is_model ? "the converged lighting model" : "full light transport") +
+         format(" of %u samples per pixel, whose own error is FLIP ", other.reference_samples) +
+         figure(other.reference_flip, 2) + ".</p>\n" +
+         pair(plot_figure(pictures, other_front(sweep)), front_table(other));
+}
+
+std::string methods_section(const PagePictures& pictures) {
+  const std::string plot = plot_figure(pictures, "indirect");
+  if (plot.empty()) return "";
+  return "<h2>Methods of indirect light</h2>\n<p>Each with every combination of its own settings, with the baseline’s "
+         "samples and with four: those that no other of the method beats, against full light transport.</p>\n" +
+         plot;
+}
+
 // How rows were sent, if they were.
 std::string sent_method(const Sweep& sweep) {
   for (const Measured& m : sweep.measured)
@@ -170,6 +192,7 @@ std::string page_of(const Sweep& sweep, const PagePictures& pictures) {
       "FLIP " +
       figure(kClaimFactor * sweep.reference_flip, 2) + ".</p>\n" +
       pair(plot_figure(pictures, "front"), front_table(sweep));
+  text += other_section(sweep, pictures) + methods_section(pictures);
   std::string links;
   for (const KnobFigures& knob : sweep.knobs)
     links += "<a href=\"#" + file_word(knob.name) + "\">" + escaped(knob.name) + "</a> ";

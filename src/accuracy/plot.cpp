@@ -13,38 +13,6 @@ namespace pocketray {
 namespace {
 
 constexpr int kSymbols[] = {7, 5, 9, 11, 13};
-constexpr const char* kInk = "#777777";
-constexpr double kCharacter = 0.56 * kPlotFont, kLine = 1.25 * kPlotFont;  // pixels, of a label's text
-
-PlotArea area_of(const PlotFrame& frame) {
-  return {(frame.right - frame.left) * kPlotWidth / kCharacter, (frame.top - frame.bottom) * frame.height / kLine};
-}
-
-std::string label_commands(const PlotFrame& frame, const std::vector<PlotPoint>& points,
-                           const std::vector<std::string>& texts, const char* color) {
-  constexpr const char* kAligns[] = {"left", "center", "right"};
-  std::string commands;
-  std::vector<Label> labels = place_labels(area_of(frame), points, texts);
-  for (std::size_t i = 0; i < labels.size(); ++i)
-    if (labels[i].placed)
-      commands += "set label " + gnuplot_string(texts[i]) +
-                  format(" at graph %.4f, graph %.4f %s front tc rgb '%s'\n", labels[i].at.x, labels[i].at.y,
-                         kAligns[labels[i].align + 1], color);
-  return commands;
-}
-
-// Shades the area below the limit on the y axis if it is in the plot. The label goes to the bottom left, where points
-// are rare: low error in little time.
-std::string unclaimed_commands(const Axis& y, double limit, const std::string& text) {
-  if (!(limit > y.low)) return "";
-  double top = std::min(1.0, place_on(y, limit));
-  return format(
-             "set object 1 rectangle from graph 0, graph 0 to graph 1, graph %.4f behind fc rgb '#888888' "
-             "fs transparent solid 0.2 noborder\n",
-             top) +
-         "set label " + gnuplot_string(text) +
-         format(" at graph 0.01, graph 0 left offset 0,0.6 front tc rgb '%s'\n", kInk);
-}
 
 // Each text starts a new line.
 std::vector<std::string> title_lines(const std::vector<std::string>& texts) {
@@ -83,13 +51,17 @@ std::vector<const Measured*> shown_of(const Sweep& sweep, const std::string& nam
   return shown;
 }
 
+std::string reference_text(const std::string& reference) {
+  return reference == "model" ? "the converged model" : "full light transport";
+}
+
 bool has_price(const Sweep& sweep, const KnobFigures& knob) {
   return std::isfinite(knob.ms_per_flip) && knob.ms_per_flip > 0 && gain_claimed(sweep, ends_of(sweep, knob.name));
 }
 
 }  // namespace
 
-Plot front_plot(const Sweep& sweep) {
+Plot front_plot(const Sweep& sweep, const std::string& plot_name) {
   std::vector<double> times, errors;
   for (const Measured& m : sweep.measured)
     if (has_figures(m)) times.push_back(ms_of(sweep, m.ns_per_pixel.value)), errors.push_back(m.flip);
@@ -133,14 +105,16 @@ Plot front_plot(const Sweep& sweep) {
   }
   if (plots.empty()) plots = "1/0 title 'nothing was measured'";
   std::string body =
-      frame_commands(frame) + axis_commands(x, 'x') + axis_commands(y, 'y') +
-      "set title 'Error over time: lower left is better'\nset xlabel 'milliseconds per frame'\n" +
+      frame_commands(frame) + axis_commands(x, 'x') + axis_commands(y, 'y') + "set title 'Error over time, against " +
+      reference_text(sweep.reference) + ": lower left is better'\nset xlabel 'milliseconds per frame'\n" +
       "set ylabel 'FLIP' offset 1.2,0\nset key at screen 0.5, screen 0.01 center bottom horizontal samplen 1 "
       "maxcols 2\n" +
       unclaimed_commands(y, limit, "not claimed: under 10 x the reference's own error") +
       label_commands(frame, points, labels, "black") + "plot " + plots + "\n";
-  return {"front", script_of("front", frame.height, data, body)};
+  return {plot_name, script_of(plot_name, frame.height, data, body)};
 }
+
+std::string other_front(const Sweep& sweep) { return sweep.reference == "model" ? "front_physical" : "front_model"; }
 
 Plot knob_plot(const Sweep& sweep, const KnobFigures& knob) {
   std::vector<const Measured*> shown = shown_of(sweep, knob.name);

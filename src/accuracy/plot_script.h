@@ -3,6 +3,8 @@
 #include <string>
 #include <vector>
 
+#include "accuracy/plot_axis.h"
+
 namespace pocketray {
 
 struct Plot {
@@ -22,6 +24,15 @@ struct PlotFrame {
   int height;
 };
 std::string frame_commands(const PlotFrame& frame);
+
+constexpr double kCharacter = 0.56 * kPlotFont, kLine = 1.25 * kPlotFont;  // pixels, of a label's text
+constexpr const char* kInk = "#777777";                                    // of what is said beside the figures
+// Texts beside the first of the points, as many as find room.
+std::string label_commands(const PlotFrame& frame, const std::vector<PlotPoint>& points,
+                           const std::vector<std::string>& texts, const char* color);
+// Shades the area below the limit on the y axis if it is in the plot. The label goes to the bottom left, where points
+// are rare: low error in little time.
+std::string unclaimed_commands(const Axis& y, double limit, const std::string& text);
 
 // A script that runs `body` for both kinds of file.
 std::string script_of(const std::string& name, int height, const std::string& data, const std::string& body);

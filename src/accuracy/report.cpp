@@ -2,9 +2,11 @@
 
 #include <cstdio>
 
+#include "accuracy/findings.h"
 #include "accuracy/page.h"
 #include "accuracy/plot.h"
 #include "accuracy/strip.h"
+#include "accuracy/sum_up.h"
 #include "accuracy/text.h"
 #include "present/png_file.h"
 
@@ -53,6 +55,8 @@ Status write_report(const std::string& folder, const Sweep& sweep, const WriteFi
   PagePictures pictures;
   RETURN_IF_ERROR(write_strips(folder, sweep, write, &pictures));
   std::vector<Plot> plots = {front_plot(sweep), price_plot(sweep)};
+  if (knows_other(sweep)) plots.push_back(front_plot(against_other(sweep), other_front(sweep)));
+  if (methods_of(sweep).size() > 1) plots.push_back(method_plot(sweep));
   for (const KnobFigures& knob : sweep.knobs) plots.push_back(knob_plot(sweep, knob));
   RETURN_IF_ERROR(draw_plots(folder, plots, write, draw, &pictures.plots, drawn));
   return write(folder + "/index.html", page_of(sweep, pictures));

@@ -26,8 +26,11 @@ struct Measured {
   double bytes_per_frame = kNotMeasured;  // of its rows from a render server; only of the baseline and near-lossless
   double flip = kNotMeasured;             // mean, as the screen shows it: after quantisation and dither
   double flip_before = kNotMeasured;      // mean, before them
+  double flip_other = kNotMeasured;       // as `flip`, against the other kind of reference
   PictureErrors errors;                   // exposed linear light, clamped to the display range [0, 1]
-  bool pareto = false;                    // no other is faster with at most its ꟻLIP
+  std::string indirect;                   // the method of indirect light, "none" without one; empty: not known
+  bool is_choice = true;                  // can be chosen between frames on the baseline's screen
+  bool pareto = false;                    // a choice, and no other is faster with at most its ꟻLIP
   std::string missing;                    // why there are no figures; empty: they exist
   std::string note;                       // says what was timed if not this renderer
 };
@@ -75,6 +78,8 @@ struct Sweep {
   std::string reference;                          // "model": the converged lighting model; "physical": full transport
   std::uint32_t reference_samples = 0;            // per pixel, both seeds together
   double reference_rmse = 0, reference_flip = 0;  // the reference's own error
+  std::uint32_t other_samples = 0;                // of the other kind of reference, and its own error
+  double other_flip = kNotMeasured;
   double model_flip = kNotMeasured, model_rmse = kNotMeasured;  // of the converged model against full transport
   double model_flip_error = 0;                                  // both references' own error in that
   std::string output;                                           // of the baseline: "rgb565 dithered"

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "accuracy/findings.h"
 #include "base/check.h"
 
 namespace pocketray {
@@ -22,6 +23,7 @@ std::vector<double> ratios_of(const PointFigures& f, const PointFigures& baselin
 Measured measured_of(const SweepPoint& point, const PointFigures& f, const PointFigures& baseline) {
   Measured m;
   m.knob = point.knob, m.value = point.value, m.is_default = point.is_default, m.missing = point.missing;
+  m.indirect = point.indirect, m.is_choice = point.is_choice;
   if (!m.missing.empty()) return m;
   if (!f.has_errors || f.ns_per_pixel.empty()) {
     m.missing = "not measured yet";
@@ -35,18 +37,19 @@ Measured measured_of(const SweepPoint& point, const PointFigures& f, const Point
   m.ns_per_pixel.low = std::min(m.ns_per_pixel.low, m.ns_per_pixel.value);
   m.ns_per_pixel.high = std::max(m.ns_per_pixel.high, m.ns_per_pixel.value);
   m.instructions_per_pixel = f.instructions_per_pixel, m.bytes_per_frame = f.bytes_per_frame;
-  m.flip = f.flip, m.flip_before = f.flip_before, m.errors = f.errors;
+  m.flip = f.flip, m.flip_before = f.flip_before, m.flip_other = f.flip_other, m.errors = f.errors;
   return m;
 }
 
 // Marks the front among the configurations a user can choose.
-void mark_front(const SweepPlan& plan, double resolution, std::vector<Measured>* measured) {
+void mark_front(double resolution, std::vector<Measured>* measured) {
   std::vector<std::size_t> there;
   std::vector<double> cost, error;
   for (std::size_t i = 0; i < measured->size(); ++i) {
-    const Measured& m = (*measured)[i];
-    if (!m.missing.empty() || (m.is_default && i > 0) || !plan.points[i].is_choice) continue;
-    there.push_back(i), cost.push_back(m.ns_per_pixel.value), error.push_back(m.flip);
+    Measured* m = &(*measured)[i];
+    m->pareto = false;
+    if (!has_figures(*m) || (m->is_default && i > 0) || !m->is_choice) continue;
+    there.push_back(i), cost.push_back(m->ns_per_pixel.value), error.push_back(m->flip);
   }
   std::vector<bool> front = pareto_front(cost, error, resolution);
   for (std::size_t i = 0; i < there.size(); ++i) (*measured)[there[i]].pareto = front[i];
@@ -119,8 +122,23 @@ void sum_up(const SweepPlan& plan, const std::vector<PointFigures>& figures, Swe
   sweep->knobs.clear();
   for (std::size_t i = 0; i < plan.points.size(); ++i)
     sweep->measured.push_back(measured_of(plan.points[i], figures[plan.points[i].is_default ? 0 : i], figures[0]));
-  mark_front(plan, kClaimFactor * sweep->reference_flip, &sweep->measured);
+  mark_front(kClaimFactor * sweep->reference_flip, &sweep->measured);
   for (const SweptKnob& swept : plan.knobs) sweep->knobs.push_back(figures_of(swept, plan, figures, *sweep));
+}
+
+Sweep against_other(const Sweep& sweep) {
+  Sweep other = sweep;
+  other.knobs.clear(), other.strips.clear(), other.reference_picture = Levels();
+  other.reference = sweep.reference == "model" ? "physical" : "model";
+  other.reference_samples = sweep.other_samples, other.other_samples = sweep.reference_samples;
+  other.reference_flip = sweep.other_flip, other.other_flip = sweep.reference_flip;
+  other.reference_rmse = kNotMeasured;
+  for (Measured& m : other.measured) {
+    std::swap(m.flip, m.flip_other);
+    m.flip_before = m.errors.rmse = kNotMeasured;
+  }
+  if (!other.measured.empty()) mark_front(kClaimFactor * other.reference_flip, &other.measured);
+  return other;
 }
 
 }  // namespace pocketray

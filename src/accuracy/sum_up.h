@@ -7,7 +7,7 @@ namespace pocketray {
 // The figures of a point so far.
 struct PointFigures {
   bool has_errors = false;
-  double flip = 0, flip_before = 0;
+  double flip = 0, flip_before = 0, flip_other = kNotMeasured;
   PictureErrors errors;
   double instructions_per_pixel = kNotMeasured, bytes_per_frame = kNotMeasured;
   std::vector<double> ns_per_pixel;  // one per round
@@ -16,5 +16,8 @@ struct PointFigures {
 // From the figures, one per point of the plan, derives sweep->measured with intervals and the front, and sweep->knobs
 // with slopes and prices. Takes the size of the picture and the reference's errors from *sweep.
 void sum_up(const SweepPlan& plan, const std::vector<PointFigures>& figures, Sweep* sweep);
+
+// The same figures as seen from the other kind of reference, without knobs: ꟻLIP alone is known against it.
+Sweep against_other(const Sweep& sweep);
 
 }  // namespace pocketray

@@ -4,6 +4,8 @@
 
 #include "accuracy/covering.h"
 #include "base/check.h"
+#include "effect/effect_list.h"
+#include "effect/setting_list.h"
 
 namespace pocketray {
 namespace {
@@ -23,7 +25,7 @@ void add_knob(const Knob& knob, const Configuration& baseline, const std::functi
   std::vector<double> values = knob_values(knob, baseline);
   plan->knobs.push_back({&knob, plan->points.size(), values.size()});
   for (double value : values) {
-    SweepPoint point = {knob.name, value_label(knob, value), baseline, 1, "", value == knob.get(baseline), true};
+    SweepPoint point = {knob.name, value_label(knob, value), baseline, 1, "", value == knob.get(baseline), true, ""};
     point.is_choice = point.is_default || knob.is_setting;
     knob.set(&point.configuration, value);
     point.price = relative_price(knob, baseline, value);
@@ -47,7 +49,7 @@ void add_covering_set(const Configuration& baseline, double price_limit, SweepPl
   Covering covering = cover_pairs(prices, price_limit);
   std::vector<SweepPoint> points;
   for (const std::vector<int>& row : covering.rows) {
-    SweepPoint point = {"several", "", baseline, 1, "", false, true};
+    SweepPoint point = {"several", "", baseline, 1, "", false, true, ""};
     int turned = 0;
     for (std::size_t k = 0; k < row.size(); ++k) {
       const SweepPoint& level = *levels[k][static_cast<std::size_t>(row[k])];
@@ -71,39 +73,88 @@ void add_covering_set(const Configuration& baseline, double price_limit, SweepPl
 
 bool is_planned(const SweepPlan& plan, const Configuration& configuration) {
   auto is_same = [&](const SweepPoint& point) {
-    return std::all_of(plan.knobs.begin(), plan.knobs.end(), [&](const SweptKnob& swept) {
-      return swept.knob->get(point.configuration) == swept.knob->get(configuration);
-    });
+    return std::all_of(knob_list().begin(), knob_list().end(),
+                       [&](const Knob& knob) { return knob.get(point.configuration) == knob.get(configuration); });
   };
   return std::any_of(plan.points.begin(), plan.points.end(), is_same);
 }
 
-// Those of the scene's knobs that settings turn.
-void add_settings(const Settings& settings, const std::function<Status(const Settings&)>& can_be_had,
-                  double price_limit, SweepPlan* plan) {
-  const Configuration& baseline = plan->points[0].configuration;
+// The baseline with those of the settings that the knobs turn.
+SweepPoint several(const Configuration& baseline, const Settings& settings, const std::vector<const Knob*>& knobs) {
   Configuration wanted = baseline;
   wanted.settings = settings;
-  SweepPoint point = {"several", "", baseline, 1, "", false, true};
-  for (const SweptKnob& swept : plan->knobs) {
-    const Knob& knob = *swept.knob;
-    double value = knob.get(wanted);
-    if (value == knob.get(baseline)) continue;
-    knob.set(&point.configuration, value);
-    point.price *= relative_price(knob, baseline, value);
-    point.value += (point.value.empty() ? "" : ", ") + (knob.name + (" " + value_label(knob, value)));
+  SweepPoint point = {"several", "", baseline, 1, "", false, true, ""};
+  for (const Knob* knob : knobs) {
+    double value = knob->get(wanted);
+    if (value == knob->get(baseline)) continue;
+    knob->set(&point.configuration, value);
+    point.price *= relative_price(*knob, baseline, value);
+    point.value += (point.value.empty() ? "" : ", ") + (knob->name + (" " + value_label(*knob, value)));
   }
+  return point;
+}
+
+// The settings, unless they are too dear, not available or already there.
+void add_settings(const Settings& settings, const std::vector<const Knob*>& knobs,
+                  const std::function<Status(const Settings&)>& can_be_had, double price_limit, SweepPlan* plan) {
+  SweepPoint point = several(plan->points[0].configuration, settings, knobs);
   bool wanted_too = point.price <= price_limit && can_be_had(point.configuration.settings).ok;
   if (wanted_too && !is_planned(*plan, point.configuration)) plan->points.push_back(point);
+}
+
+// Rays through a pixel in comparisons of methods, since smooth edges count as much as indirect light does.
+constexpr std::uint32_t kMethodSamples = 4;
+
+// Each method of indirect light with every combination of the settings that are its own, with the baseline's samples
+// and with kMethodSamples.
+void add_methods(const std::function<Status(const Settings&)>& can_be_had, double price_limit,
+                 const std::function<EffectMask(const Settings&)>& effects_with, SweepPlan* plan) {
+  const Settings baseline = plan->points[0].configuration.settings;
+  const SettingRow& choice = *find_setting("indirect");
+  std::vector<const Knob*> knobs;
+  for (const Knob& knob : knob_list())
+    if (knob.is_setting) knobs.push_back(&knob);
+  std::vector<EffectMask> done;
+  auto add_method = [&](double value) {
+    Settings settings = baseline;
+    choice.field.set(&settings, value);
+    const EffectMask method = effects_with(settings) & kIndirectEffects;
+    if (std::find(done.begin(), done.end(), method) != done.end()) return;
+    done.push_back(method);
+    std::vector<Settings> combined = {settings};
+    for (const SettingRow& row : kSettingList) {
+      const bool is_its_own = (row.effects & method) != 0 && (row.effects & ~method) == 0;
+      const std::size_t count = is_its_own ? combined.size() : 0;
+      for (std::size_t i = 0; i < count; ++i)
+        for (int k = 0; k < row.sweep.count; ++k) {
+          combined.push_back(combined[i]);
+          row.field.set(&combined.back(), row.sweep.values[k]);
+        }
+    }
+    for (Settings each : combined)
+      for (std::uint32_t samples : {baseline.samples_per_pixel, kMethodSamples}) {
+        each.samples_per_pixel = samples;
+        add_settings(each, knobs, can_be_had, price_limit, plan);
+      }
+  };
+  add_method(choice.field.get(baseline));
+  for (int i = 0; i < choice.sweep.count; ++i) add_method(choice.sweep.values[i]);
+}
+
+const char* name_of_method(EffectMask effects) {
+  for (const EffectRow& row : kEffectList)
+    if ((effects & kIndirectEffects & bit(row.effect)) != 0) return row.name;
+  return "none";
 }
 
 }  // namespace
 
 SweepPlan plan_sweep(const std::string& scene, const EffectPlan& effects, const Configuration& baseline,
                      const std::function<Status(const Settings&)>& can_be_had, double price_limit,
-                     const std::vector<Settings>& ladder) {
+                     const std::vector<Settings>& ladder,
+                     const std::function<EffectMask(const Settings&)>& effects_with) {
   SweepPlan plan;
-  plan.points.push_back({"baseline", "", baseline, 1, "", true, true});
+  plan.points.push_back({"baseline", "", baseline, 1, "", true, true, ""});
   for (const Knob& knob : knob_list()) {
     std::string why;
     if (knob_applies(knob, scene, effects, &why))
@@ -112,7 +163,12 @@ SweepPlan plan_sweep(const std::string& scene, const EffectPlan& effects, const 
       plan.notes.push_back(std::string(knob.name) + " is skipped: " + why);
   }
   add_covering_set(baseline, price_limit, &plan);
-  for (const Settings& settings : ladder) add_settings(settings, can_be_had, price_limit, &plan);
+  std::vector<const Knob*> swept;
+  for (const SweptKnob& each : plan.knobs) swept.push_back(each.knob);
+  for (const Settings& settings : ladder) add_settings(settings, swept, can_be_had, price_limit, &plan);
+  if (!effects_with) return plan;
+  add_methods(can_be_had, price_limit, effects_with, &plan);
+  for (SweepPoint& point : plan.points) point.indirect = name_of_method(effects_with(point.configuration.settings));
   return plan;
 }
 

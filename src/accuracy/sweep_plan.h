@@ -1,5 +1,5 @@
-// The plan of a sweep: the baseline, each value of each knob with all others as in the baseline, and a covering set of
-// combinations.
+// The plan of a sweep: the baseline, each value of each knob with all others as in the baseline, a covering set of
+// combinations, and the methods of indirect light, each with its own settings.
 #pragma once
 #include <functional>
 
@@ -16,6 +16,7 @@ struct SweepPoint {
   std::string missing;      // why it is not available; empty: measure it
   bool is_default = false;  // equals the baseline, which is measured instead
   bool is_choice = true;    // can be chosen between frames on the baseline's screen, so may be part of the front
+  std::string indirect;     // the method of indirect light it has, "none" without one; empty: not known
 };
 
 // The points of a knob: first … first + count - 1.
@@ -31,9 +32,11 @@ struct SweepPlan {
 };
 
 // `can_be_had` fails if settings are not available in the scene. `price_limit`: largest frame time of combinations,
-// relative to the baseline. `ladder`: settings to measure besides the covering set.
+// relative to the baseline. `ladder`: settings to measure besides the covering set. `effects_with`: the scene's effects
+// with other settings; without it, methods of indirect light are not compared.
 SweepPlan plan_sweep(const std::string& scene, const EffectPlan& effects, const Configuration& baseline,
                      const std::function<Status(const Settings&)>& can_be_had, double price_limit,
-                     const std::vector<Settings>& ladder = {});
+                     const std::vector<Settings>& ladder = {},
+                     const std::function<EffectMask(const Settings&)>& effects_with = nullptr);
 
 }  // namespace pocketray

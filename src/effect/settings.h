@@ -48,7 +48,7 @@ struct Quality {
   NormalMode normals = NormalMode::as_scene;
   IndirectChoice indirect = IndirectChoice::automatic;
   Reconstruction reconstruction = Reconstruction::bicubic;
-  std::uint32_t virtual_lights = 64;  // of instant radiosity; a pixel traces a shadow ray to a sixteenth of them
+  std::uint32_t virtual_lights = 64;  // of instant radiosity
   Compensation compensation = Compensation::none;
   float selective_contrast = 0;  // up to which pixels are interpolated, as displayed; 0: all are traced
   MovingContrast moving_contrast = MovingContrast::as_resting;

@@ -177,10 +177,10 @@ Status build_renderer_unexposed(Renderer* renderer) {
   if (moves(*renderer)) renderer->pose = make_pose(renderer->scene, &renderer->persistent_arena);
   make_recolorable(renderer);
   const std::size_t used = renderer->persistent_arena.used;
-  renderer->frame.indirect = prepare_indirect(renderer->scene, renderer->settings, renderer->effects.mask,
+  const EffectMask prepared = prepared_methods(renderer->scene, renderer->settings, renderer->effects.mask);
+  renderer->frame.indirect = prepare_indirect(renderer->scene, renderer->settings, prepared,
                                               &renderer->persistent_arena, &renderer->frame_arena);
-  CHECK_LE(renderer->persistent_arena.used - used,
-           indirect_need(renderer->scene, renderer->settings, renderer->effects.mask).keep);
+  CHECK_LE(renderer->persistent_arena.used - used, indirect_need(renderer->scene, renderer->settings, prepared).keep);
   if (plans_environment_lights(renderer->scene, renderer->settings))
     renderer->environment_lights =
         new (arena_array<EnvironmentLights>(&renderer->persistent_arena, 1).data) EnvironmentLights();

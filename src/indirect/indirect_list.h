@@ -21,7 +21,16 @@ struct IndirectData {
   const void* prepared[IndirectList::kCount] = {};
 };
 
-// Of all methods of a plan.
+// The methods that are prepared: those of the plan, and radiosity if settings of a later frame may turn to it and read
+// gradients then.
+inline EffectMask prepared_methods(const Scene& scene, const Settings& settings, EffectMask mask) {
+  const EffectMask radiosity = RadiosityIndirect::kEffects & ~settings.forced_off;
+  const bool may_read_gradients =
+      is_smooth_on_triangles(settings.reconstruction) && RadiosityIndirect::use(scene) != IndirectUse::nothing;
+  return may_read_gradients ? mask | radiosity : mask;
+}
+
+// Of all these methods.
 inline IndirectNeed indirect_need(const Scene& scene, const Quality& how, EffectMask mask) {
   IndirectNeed sum;
   for (const IndirectInfo& info : IndirectList::kInfos)

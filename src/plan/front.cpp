@@ -17,6 +17,13 @@ void drop(Front* front, std::uint32_t index) {
   --front->count;
 }
 
+// The effect that a choice asks for; 0 for auto and none.
+EffectMask effect_of(IndirectChoice choice) {
+  for (const EffectRow& row : kEffectList)
+    if (has(kIndirectEffects, row.effect) && indirect_choice(row.effect) == choice) return bit(row.effect);
+  return 0;
+}
+
 }  // namespace
 
 const Candidate* find_candidate(const Front& front, const Quality& quality) {
@@ -144,10 +151,12 @@ Front builtin_front() {
 
 void drop_what_scene_ignores(Front* front, EffectMask effects) {
   const Quality usual;
-  for (std::uint32_t i = 0; i < front->count; ++i)
+  for (std::uint32_t i = 0; i < front->count; ++i) {
+    const EffectMask seen = effects | effect_of(front->candidates[i].indirect);
     for (const SettingRow& row : kSettingList)
-      if (row.seen_with != kAlways && !(row.seen_with & effects))
+      if (row.seen_with != kAlways && !(row.seen_with & seen))
         row.field.set(&front->candidates[i], row.field.get(usual));
+  }
   for (std::uint32_t i = 1; i < front->count;) {  // of equal qualities the first is the cheapest
     std::uint32_t k = 0;
     while (k < i && !same_quality(front->candidates[k], front->candidates[i])) ++k;

@@ -81,7 +81,7 @@ Status plan_memory_with(const Scene& scene, const Settings& settings, const Effe
   }
   add_part(plan, "accelerator", ArenaKind::persistent, keep);
   add_part(plan, "pose", ArenaKind::persistent, moves ? pose_need(scene) : 0);
-  const IndirectNeed indirect = indirect_need(scene, settings, effects.mask);
+  const IndirectNeed indirect = indirect_need(scene, settings, prepared_methods(scene, settings, effects.mask));
   add_part(plan, "indirect light", ArenaKind::persistent, indirect.keep);
   scratch = std::max(scratch, indirect.scratch);
   add_part(plan, "environment shadows", ArenaKind::persistent,

@@ -21,6 +21,8 @@ Json measured_json(const Measured& m) {
   json["bytes_per_frame"] = m.bytes_per_frame;
   json["flip"] = m.flip;
   json["flip_before"] = m.flip_before;
+  json["flip_other"] = m.flip_other;
+  if (!m.indirect.empty()) json["indirect"] = m.indirect;
   json["rmse"] = m.errors.rmse;
   json["rel_mse"] = m.errors.rel_mse;
   json["p99"] = m.errors.p99;
@@ -87,6 +89,8 @@ Json sweep_json(const Sweep& sweep) {
           {"reference_samples", sweep.reference_samples},
           {"reference_rmse", sweep.reference_rmse},
           {"reference_flip", sweep.reference_flip},
+          {"other_samples", sweep.other_samples},
+          {"other_flip", sweep.other_flip},
           {"model_flip", sweep.model_flip},
           {"model_rmse", sweep.model_rmse},
           {"notes", sweep.notes},

@@ -1,6 +1,7 @@
 #include "sweep/rigs.h"
 
 #include "base/check.h"
+#include "plan/plan_effects.h"
 #include "plan/plan_lights.h"
 
 namespace pocketray {
@@ -31,8 +32,9 @@ Status plan_rigs(Rigs* rigs, SweepPlan* plan) {
     std::uint32_t count;
     return light_point_count(renderer->scene, wanted, renderer->effects.mask, &count);
   };
+  auto effects_with = [&](const Settings& wanted) { return plan_effects(renderer->scene, wanted).mask; };
   *plan = plan_sweep(options.common.scene, renderer->effects, first->baseline, can_be_had, options.price_limit,
-                     ladder_of(*renderer));
+                     ladder_of(*renderer), effects_with);
   return success();
 }
 

@@ -24,8 +24,8 @@ Json to_json(const PointFigures& f) {
                {"bytes_per_frame", number(f.bytes_per_frame)}};
   if (f.has_errors) {
     const PictureErrors& e = f.errors;
-    json["errors"] = {number(f.flip), number(f.flip_before), number(e.rmse), number(e.rel_mse),
-                      number(e.p99),  number(e.max),         number(e.bias), number(e.psnr)};
+    json["errors"] = {number(f.flip), number(f.flip_before), number(e.rmse), number(e.rel_mse),   number(e.p99),
+                      number(e.max),  number(e.bias),        number(e.psnr), number(f.flip_other)};
   }
   return json;
 }
@@ -41,6 +41,7 @@ PointFigures figures_from(const Json& json) {
   f.flip = number_of(e.at(0)), f.flip_before = number_of(e.at(1));
   f.errors = {number_of(e.at(2)), number_of(e.at(3)), number_of(e.at(4)),
               number_of(e.at(5)), number_of(e.at(6)), number_of(e.at(7))};
+  if (e.size() > 8) f.flip_other = number_of(e.at(8));  // older files lack it
   return f;
 }
 
@@ -55,7 +56,8 @@ bool is_sane(const PointFigures& f) {
     return false;
   if (!std::isnan(f.bytes_per_frame) && !is_within(f.bytes_per_frame, 0, kBytesPerFrameMax)) return false;
   const PictureErrors& e = f.errors;  // of light between 0 and 1
-  return !f.has_errors || (is_within(f.flip, 0, 1) && is_within(f.flip_before, 0, 1) && is_within(e.rmse, 0, 1) &&
+  return !f.has_errors || (is_within(f.flip, 0, 1) && is_within(f.flip_before, 0, 1) &&
+                           (std::isnan(f.flip_other) || is_within(f.flip_other, 0, 1)) && is_within(e.rmse, 0, 1) &&
                            is_within(e.rel_mse, 0, 1 / kRelativeFloor) && is_within(e.p99, 0, 1) &&
                            is_within(e.max, 0, 1) && is_within(e.bias, -1, 1) && e.psnr >= 0);
 }

@@ -34,7 +34,7 @@ struct Run {
   Rigs rigs;
   SweepPlan plan;
   AccuracyState state;
-  ReferencePictures reference;
+  ReferencePictures reference, other;  // the one that the options choose, and the other kind
 };
 
 Transport chosen(const AccuracyOptions& o) { return o.reference == "model" ? Transport::model : Transport::physical; }
@@ -116,6 +116,7 @@ Status find_errors(const Run& run, Rig* rig, const SweepPoint& point, PointFigur
   const ReferencePictures& reference = run.reference;
   double ppd = run.options.pixels_per_degree;
   f->flip = mean_of(flip_errors(reference.encoded, encoded_levels(levels), width, height, ppd));
+  f->flip_other = mean_of(flip_errors(run.other.encoded, encoded_levels(levels), width, height, ppd));
   f->flip_before = mean_of(flip_errors(reference.encoded, encoded_light(light), width, height, ppd));
   f->errors = picture_errors(reference.mean, light);
   f->errors.rmse = unbiased_rmse(reference.one, reference.other, light);
@@ -236,13 +237,13 @@ Status add_strip(Run* run, const SweptKnob& swept, Sweep* sweep, bool* whole) {
 Status render_references(Run* run, Sweep* sweep, bool* whole) {
   Rig* rig;
   RETURN_IF_ERROR(reference_rig(&run->rigs, &rig));
-  ReferencePictures other;
   Transport kind = chosen(run->options), other_kind = other_than(kind);
   RETURN_IF_ERROR(render_reference(run->options, kind, rig, &run->state, &run->reference, whole));
   if (!*whole) return success();
-  RETURN_IF_ERROR(render_reference(run->options, other_kind, rig, &run->state, &other, whole));
+  RETURN_IF_ERROR(render_reference(run->options, other_kind, rig, &run->state, &run->other, whole));
   if (!*whole) return success();
-  const ReferencePictures& reference = run->reference;
+  const ReferencePictures &reference = run->reference, &other = run->other;
+  sweep->other_samples = static_cast<std::uint32_t>(other.samples), sweep->other_flip = other.flip;
   sweep->reference_samples = static_cast<std::uint32_t>(reference.samples);
   sweep->reference_rmse = reference.rmse, sweep->reference_flip = reference.flip;
   sweep->reference_picture = reference.levels;
@@ -299,7 +300,7 @@ Status count_otherwise(Run* run, const Rig& rig, bool by_cpu, Sweep* sweep, bool
 
 Status measure_sweep(const AccuracyOptions& options, Sweep* sweep, bool* whole, SweptFront* front) {
   CHECK(sweep != nullptr && whole != nullptr);
-  Run run = {options, {options, {}}, {}, {}, {}};
+  Run run = {options, {options, {}}, {}, {}, {}, {}};
   *whole = true;
   RETURN_IF_ERROR(check_options(options));
   bool counts = platform::start_instruction_count();  // including later threads

@@ -194,10 +194,29 @@ TEST_CASE("page_tells_what_is_paid_in_bytes") {
   CHECK(has(page, "the last of 8."));
 }
 
+// Goal: the page shows the front against both kinds of reference and the methods of indirect light, if it knows them.
+// Method: pages with and without them.
+TEST_CASE("page_shows_either_reference_and_each_method") {
+  Sweep sweep = sample_sweep();
+  CHECK(!has(page_of(sweep, {}), "The front against"));
+  add_methods(&sweep);
+  PagePictures pictures;
+  CHECK(!has(page_of(sweep, pictures), "Methods of indirect light"));
+  pictures.plots["indirect"] = "<svg viewBox=\"0 0 1 1\"></svg>\n";
+  std::string page = page_of(sweep, pictures);
+  CHECK(markup_fault(page) == "");
+  CHECK(has(page, "The front against physical"));
+  CHECK(has(page, "of 256 samples per pixel, whose own error is FLIP 0.030"));
+  CHECK(has(page, "Methods of indirect light"));
+  sweep.reference = "physical";
+  CHECK(has(page_of(sweep, pictures), "The front against model"));
+}
+
 // Goal: every sweep produces all files, and missing figures do not appear as numbers. Method: a complete sweep; one
 // knob with one value, without errors, without figures; an empty one.
 TEST_CASE("report_has_no_gaps") {
   Sweep whole = sample_sweep(), zero = empty_sweep(), missing = sample_sweep(), nothing = empty_sweep();
+  add_methods(&whole);
   add_knob(&zero, "only", 1, kNotMeasured);
   for (Measured& m : zero.measured) m.flip = m.flip_before = 0, m.errors = PictureErrors{0, 0, 0, 0, 0, INFINITY};
   for (Measured& m : missing.measured) m.missing = "no memory";
@@ -212,6 +231,7 @@ TEST_CASE("report_has_no_gaps") {
     REQUIRE_MESSAGE(status.ok, status.message);
     CHECK(drawn == (std::system("gnuplot -V >/dev/null 2>&1") == 0));
     std::vector<std::string> plots = {"/front", "/price"};
+    if (sweep == &whole) plots.insert(plots.end(), {"/front_physical", "/indirect"});
     for (const KnobFigures& knob : sweep->knobs) {
       plots.push_back("/knob_" + knob.name);
       CHECK(has(content(folder.path + ("/strip_" + knob.name) + ".png"), "PNG"));

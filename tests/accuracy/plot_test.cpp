@@ -49,6 +49,44 @@ TEST_CASE("plot_front_has_a_point_for_all_that_was_measured") {
   CHECK(has(plot.script, "not claimed"));
 }
 
+// Goal: each method of indirect light has a line through what no other of it beats, against full light transport
+// whichever reference was chosen. Method: three methods, of one of which a configuration is beaten and another no
+// choice.
+TEST_CASE("plot_of_methods_has_the_front_of_each") {
+  Sweep sweep = sample_sweep();
+  add_methods(&sweep);
+  CHECK(methods_of(sweep) == std::vector<std::string>{"radiosity", "none", "instant-radiosity"});
+  std::vector<const Measured*> front = method_front(sweep, "none");
+  REQUIRE(front.size() >= 2);
+  for (std::size_t i = 1; i < front.size(); ++i) {
+    CHECK(front[i]->ns_per_pixel.value > front[i - 1]->ns_per_pixel.value);
+    CHECK(front[i]->flip_other < front[i - 1]->flip_other);
+  }
+  Plot plot = method_plot(sweep);
+  CHECK(plot.name == "indirect");
+  CHECK(points_of(plot, "method1") == static_cast<int>(front.size()));
+  CHECK(has(plot.script, "using 1:2 title 'instant-radiosity'"));
+  CHECK(has(plot.script, "the reference''s own error"));
+  const std::size_t before = front.size();
+  const_cast<Measured*>(front.back())->is_choice = false;
+  CHECK(method_front(sweep, "none").size() == before - 1);
+  sweep.reference = "physical";
+  for (Measured& m : sweep.measured) std::swap(m.flip, m.flip_other);
+  CHECK(method_plot(sweep).script.find(plot.script.substr(0, 200)) == 0);
+  CHECK(methods_of(sample_sweep()).empty());
+}
+
+// Goal: settings are named without the method. Method: the labels of one configuration.
+TEST_CASE("plot_of_methods_names_their_settings") {
+  Sweep sweep = empty_sweep();
+  sweep.measured.push_back(
+      sample_measured("several", "samples 4, indirect instant-radiosity, virtual-lights 256", 90, 0.03));
+  add_methods(&sweep);
+  CHECK(has(method_plot(sweep).script, "set label 'samples 4, virtual-lights 256' at"));
+  sweep.measured.back().value = "indirect instant-radiosity, virtual-lights 256";
+  CHECK(has(method_plot(sweep).script, "set label 'virtual-lights 256' at"));
+}
+
 // Goal: a knob's plot has its values with their labels, intervals, slope and theory. Method: the script's text.
 TEST_CASE("plot_knob_has_its_values_slope_and_theory") {
   Sweep sweep = sample_sweep();
@@ -94,13 +132,15 @@ TEST_CASE("plot_scripts_hold_numbers_alone") {
   Sweep none = empty_sweep(), zero = sample_sweep(), equal = sample_sweep(), blank = empty_sweep();
   blank.measured.clear();
   add_knob(&none, "one", 1, kNotMeasured);
+  add_methods(&equal);
   for (Measured& m : zero.measured) m.flip = 0, m.errors = PictureErrors{0, 0, 0, 0, 0, INFINITY};
   for (Measured& m : equal.measured) m.flip = 0.25, m.ns_per_pixel = {40, 40, 40};
   Sweep mixed = sample_sweep();
+  add_methods(&mixed);
   mixed.measured[4].flip = mixed.measured[4].errors.rmse = 0;
   mixed.measured[1].ns_per_pixel.low = -INFINITY, mixed.knobs[0].slope = {0, -INFINITY, INFINITY};
   for (const Sweep* sweep : {&none, &zero, &equal, &blank, &mixed}) {
-    std::string scripts = front_plot(*sweep).script + price_plot(*sweep).script;
+    std::string scripts = front_plot(*sweep).script + price_plot(*sweep).script + method_plot(*sweep).script;
     for (const KnobFigures& knob : sweep->knobs) scripts += knob_plot(*sweep, knob).script;
     for (std::string bad : {"nan", "inf", "∞", "–"}) CHECK_MESSAGE(!has(scripts, bad), bad);
   }

@@ -55,6 +55,16 @@ inline void add_sent_knob(Sweep* sweep) {
   *off = sample_measured("near-lossless", "off", time, 0.08), off->bytes_per_frame = 4000, off->is_default = true;
 }
 
+// Gives each configuration a method of indirect light in turn, and errors against the other reference that differ.
+inline void add_methods(Sweep* sweep) {
+  constexpr const char* kMethods[] = {"radiosity", "none", "instant-radiosity"};
+  for (std::size_t i = 0; i < sweep->measured.size(); ++i) {
+    Measured* m = &sweep->measured[i];
+    m->indirect = kMethods[i % 3], m->flip_other = 0.1 + 0.5 * m->flip;
+  }
+  sweep->other_flip = 0.03, sweep->other_samples = 256;
+}
+
 inline void mark_front(Sweep* sweep) {
   std::vector<double> cost, error;
   for (const Measured& m : sweep->measured) {

@@ -7,10 +7,12 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <map>
 #include <set>
 
 #include "accuracy/csv.h"
 #include "base/rng.h"
+#include "effect/setting_list.h"
 #include "support/effort.h"
 
 using namespace pocketray;
@@ -127,6 +129,72 @@ TEST_CASE("sweep_plan_measures_a_ladder_beside_the_knobs") {
   }
   CHECK(front > 2);
   CHECK(others == 0);
+}
+
+// Goal: each method of indirect light that a scene has is measured with every combination of its own settings, once,
+// and with no others. Method: a scene that stores radiosity; then one that does not, where asking for it gives the
+// ambient term.
+TEST_CASE("sweep_plan_combines_the_settings_of_each_method") {
+  EffectPlan effects;
+  effects.mask = bit(Effect::radiosity);
+  bool stores_it = true;
+  auto effects_with = [&](const Settings& s) -> EffectMask {
+    if (s.indirect == IndirectChoice::none) return 0;
+    if (s.indirect == indirect_choice(Effect::instant_radiosity)) return bit(Effect::instant_radiosity);
+    return bit(s.indirect == indirect_choice(Effect::ambient) || !stores_it ? Effect::ambient : Effect::radiosity);
+  };
+  SweepPlan plan = plan_sweep("file.pray", effects, Configuration(), always, 16, {}, effects_with);
+  // Those that differ from the baseline in samples, the method and its settings alone.
+  std::map<std::string, std::vector<Settings>> compared;
+  for (const SweepPoint& p : plan.points) {
+    Settings others = p.configuration.settings;
+    others.samples_per_pixel = 1, others.indirect = IndirectChoice::automatic;
+    others.virtual_lights = 64, others.compensation = Compensation::none;
+    others.reconstruction = Reconstruction::bicubic;
+    if (p.is_choice && !p.is_default && same_quality(others, Settings()))
+      compared[p.indirect].push_back(p.configuration.settings);
+  }
+  auto count_of = [&](const char* method, std::uint32_t samples) {
+    const std::vector<Settings>& all = compared[method];
+    return std::count_if(all.begin(), all.end(), [&](const Settings& s) { return s.samples_per_pixel == samples; });
+  };
+  for (const auto& method : compared)
+    for (std::size_t i = 0; i < method.second.size(); ++i)
+      for (std::size_t k = 0; k < i; ++k) CHECK_FALSE(same_quality(method.second[i], method.second[k]));
+  CHECK((count_of("none", 1) == 1 && count_of("none", 4) >= 1));
+  CHECK((count_of("ambient", 1) == 1 && count_of("ambient", 4) == 1));
+  CHECK((count_of("radiosity", 1) == 4 + 1 && count_of("radiosity", 4) == 5));  // also asked for by name
+  CHECK(count_of("instant-radiosity", 1) == 6 * 2);
+  CHECK(count_of("instant-radiosity", 4) == 5 * 2);  // 512 lights are beyond the limit
+  for (const Settings& s : compared["ambient"]) CHECK((s.virtual_lights == 64 && s.compensation == Compensation::none));
+  stores_it = false, effects.mask = bit(Effect::ambient);
+  plan = plan_sweep("file.pray", effects, Configuration(), always, 16, {}, effects_with);
+  for (const SweepPoint& p : plan.points) CHECK(p.indirect != "radiosity");
+}
+
+// Goal: the same figures are seen from either reference. Method: made-up errors against the other that fall the other
+// way, so that its front is another; twice gives the first.
+TEST_CASE("sweep_is_seen_from_either_reference") {
+  SweepPlan plan = plan_sweep("file.pray", all_effects(), Configuration(), always, 16);
+  std::vector<PointFigures> figures = made_up(plan);
+  for (PointFigures& f : figures) f.flip_other = 0.2 - f.flip;
+  Sweep sweep;
+  sweep.reference = "model", sweep.reference_flip = 1e-5, sweep.other_flip = 2e-5;
+  sweep.reference_samples = 100, sweep.other_samples = 10;
+  sum_up(plan, figures, &sweep);
+  const Sweep other = against_other(sweep), same = against_other(other);
+  CHECK((other.reference == "physical" && other.reference_samples == 10 && other.reference_flip == 2e-5));
+  CHECK((same.reference == "model" && same.reference_samples == 100 && same.other_samples == 10));
+  REQUIRE(other.measured.size() == sweep.measured.size());
+  int front = 0, shared = 0;
+  for (std::size_t i = 0; i < sweep.measured.size(); ++i) {
+    CHECK(other.measured[i].flip == sweep.measured[i].flip_other);
+    CHECK(same.measured[i].flip == sweep.measured[i].flip);
+    CHECK(same.measured[i].pareto == sweep.measured[i].pareto);
+    front += other.measured[i].pareto, shared += other.measured[i].pareto && sweep.measured[i].pareto;
+  }
+  CHECK(front > 0);
+  CHECK(shared <= 1);  // the fastest
 }
 
 // Goal: unavailable values are listed with the reason and not in the covering set. Method: at most 36 points per area

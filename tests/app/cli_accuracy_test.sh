@@ -20,6 +20,13 @@ if "${run[@]}" --help | grep -q '^ *accuracy '; then
   check accuracy_table grep -q '^samples,16,[0-9]' sweep/accuracy.csv
   check accuracy_json grep -q '"reference_flip": 0' sweep.json
   check accuracy_page grep -q '</html>' sweep/index.html
+  # Goal: a scene that stores radiosity is swept by every method of indirect light and every reconstruction.
+  expect bake_lit 0 'patches' bake cube --radiosity -o lit.pray
+  expect accuracy_of_lit 0 'index.html for the results' accuracy lit.pray "${tiny[@]}" -o lit --rounds 1
+  for method in none ambient radiosity instant-radiosity; do
+    check "accuracy_has_$method" grep -q "^several,.*,$method\$" lit/accuracy.csv
+  done
+  check accuracy_has_smooth_light grep -q '^reconstruction,cubic,[0-9]' lit/accuracy.csv
   # Goal: instructions are counted if possible; otherwise nothing else is lost. Method: the baseline's row; if the CPU does
   # not count them, a valgrind that fails, one that is interrupted, and a program without symbols. Skipped if valgrind is not
   # installed or cannot run this program (an emulated CPU, a sanitizer).

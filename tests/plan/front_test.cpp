@@ -306,6 +306,22 @@ TEST_CASE("front_builtin_ascends") {
         9);  // 1, 2, 4, 8 and 16 samples; of 1, some pixels interpolated at three contrasts, or a quarter
 }
 
+// Goal: candidates keep the settings of the method of indirect light that they choose, whatever method the renderer has
+// now. Method: instant radiosity and the ambient term, each with two numbers of virtual lights, where the ambient term
+// is on.
+TEST_CASE("front_keeps_the_settings_of_other_methods") {
+  Front front;
+  for (Effect method : {Effect::instant_radiosity, Effect::ambient})
+    for (std::uint32_t lights : {64u, 256u}) {
+      Candidate* c = &front.candidates[front.count++];
+      c->indirect = indirect_choice(method), c->virtual_lights = lights;
+    }
+  drop_what_scene_ignores(&front, bit(Effect::ambient));
+  REQUIRE(front.count == 3);
+  CHECK((front.candidates[0].virtual_lights == 64 && front.candidates[1].virtual_lights == 256));
+  CHECK((front.candidates[2].indirect == indirect_choice(Effect::ambient) && front.candidates[2].virtual_lights == 64));
+}
+
 // Goal: changes are described in words. Method: examples.
 TEST_CASE("front_describes_changes") {
   char text[256];

@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <cstring>
 #include <limits>
+#include <set>
 #include <thread>
 
 #include "platform/file.h"
@@ -82,6 +83,7 @@ void check_same_errors(const Sweep& a, const Sweep& b) {
     CHECK(m.missing == n.missing);
     CHECK(m.flip == n.flip);
     CHECK(m.flip_before == n.flip_before);
+    CHECK(m.flip_other == n.flip_other);
     CHECK(m.errors.rmse == n.errors.rmse);
     CHECK(m.errors.rel_mse == n.errors.rel_mse);
     CHECK(m.errors.max == n.errors.max);
@@ -152,17 +154,22 @@ TEST_CASE("accuracy_measures_every_knob_of_the_scene") {
     }
   }
   double one = 0, sixteen = 0;
+  std::set<std::string> methods;
   for (const Measured& m : sweep.measured) {
     CAPTURE(m.value);
     CHECK(m.missing.empty());
     CHECK(m.ns_per_pixel.value > 0);
     CHECK(m.ns_per_pixel.low <= m.ns_per_pixel.value);
     CHECK(m.flip > 0);
+    CHECK(m.flip_other > 0);
+    CHECK(m.flip_other != m.flip);
+    methods.insert(m.indirect);
     if (m.knob == "samples" && m.value == "1") one = m.errors.rmse;
     if (m.knob == "samples" && m.value == "16") sixteen = m.errors.rmse;
     if (m.knob == "arithmetic") CHECK(std::fabs(m.errors.rmse - sweep.measured[0].errors.rmse) < 1e-3 * m.errors.rmse);
   }
   CHECK(sixteen < 0.7 * one);
+  CHECK(methods == std::set<std::string>{"ambient", "instant-radiosity", "none"});
 }
 
 // Goal: a frame's time covers all its work. Method: a moving scene with few pixels, so that posing and refitting
@@ -393,7 +400,7 @@ TEST_CASE("accuracy_refuses_damaged_files") {
   f.errors.psnr = std::numeric_limits<double>::infinity();
   f.ns_per_pixel = {12.25, 1e9 / 3};
   state.points["samples 4"] = f;
-  f.instructions_per_pixel = 7654.5, f.bytes_per_frame = 4321.5;
+  f.instructions_per_pixel = 7654.5, f.bytes_per_frame = 4321.5, f.flip_other = 0.0625;
   state.points["samples 9"] = f;
   state.counted = "by hand";
   REQUIRE(save_state(folder.path, state).ok);
@@ -406,6 +413,8 @@ TEST_CASE("accuracy_refuses_damaged_files") {
   CHECK(read.points.at("samples 9").instructions_per_pixel == 7654.5);
   CHECK(std::isnan(read.points.at("samples 4").bytes_per_frame));
   CHECK(read.points.at("samples 9").bytes_per_frame == 4321.5);
+  CHECK(std::isnan(read.points.at("samples 4").flip_other));
+  CHECK(read.points.at("samples 9").flip_other == 0.0625);
   CHECK(read.counted == "by hand");
 
   platform::LoadedFile file;
@@ -421,8 +430,8 @@ TEST_CASE("accuracy_refuses_damaged_files") {
   }
   const std::pair<const char*, const char*> senseless[] = {
       // what no sweep gives
-      {"12.25", "1e300"},  {"12.25", "-1.0"},  {"12.25", "\"none\""}, {"12.25", "0"},
-      {"7654.5", "1e300"}, {"7654.5", "-1.0"}, {"4321.5", "1e300"},   {"4321.5", "-1.0"}};
+      {"12.25", "1e300"}, {"12.25", "-1.0"},   {"12.25", "\"none\""}, {"12.25", "0"},   {"7654.5", "1e300"},
+      {"7654.5", "-1.0"}, {"4321.5", "1e300"}, {"4321.5", "-1.0"},    {"0.0625", "1.5"}};
   for (const auto& change : senseless) {
     const char *figure = change.first, *other = change.second;
     CAPTURE(other);
