@@ -22,6 +22,31 @@ struct LobeFrameT {
 using LobeFrame = LobeFrameT<float>;
 using LobeFrameD = LobeFrameT<double>;
 
+// A lobe in two parts, see linear_lobe.h: a sharp one, which times the light's cosine is `albedo` times a distribution
+// of directions, given by the rows of the matrix M⁻¹ that makes a power of the z axis' cosine of it; and the rest.
+template <class T>
+struct LobePartsT {
+  Vec3T<T> x, y, z;
+  Vec3T<T> albedo;
+  Vec3T<T> diffuse, scattered;  // of the rest
+  T roughness;                  // set if scattered is not 0
+};
+using LobeParts = LobePartsT<float>;
+using LobePartsD = LobePartsT<double>;
+
+// Arguments are as in BrdfInfo.
+struct LinearForm {
+  std::uint32_t power;  // of the cosine, odd
+  // False: the lobe cannot be divided for that material or viewer.
+  bool (*divide)(const Material& material, const Vec3& specular, const Vec3& diffuse, const LobeFrame& frame,
+                 const Vec3& to_viewer, LobeParts* parts);
+  bool (*divide_exactly)(const Material& material, const Vec3d& specular, const Vec3d& diffuse, const LobeFrameD& frame,
+                         const Vec3d& to_viewer, LobePartsD* parts);
+  // The value of the rest for light at a cosine; null: it is LobeParts::diffuse.
+  Vec3 (*rest)(const LobeParts& parts, float cos_light);
+  Vec3d (*exact_rest)(const LobePartsD& parts, double cos_light);
+};
+
 // All vectors but the grain are unit. Values and densities are in 1/sr. `specular` is the material's at the point,
 // tinted by texture and vertex colour; it is at most Material::specular.
 struct BrdfInfo {
@@ -44,6 +69,7 @@ struct BrdfInfo {
   float diffuse_max;  // upper bound of what remains of `diffuse`, as a factor
   // The same lobe with a grain, which stands in where there is one; null: it has none. No material names that lobe.
   const BrdfInfo* with_grain;
+  const LinearForm* linear = nullptr;  // null: it has none
 };
 
 }  // namespace pocketray

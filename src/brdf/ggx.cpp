@@ -16,6 +16,7 @@
 #include "brdf/brdf_list.h"
 #include "brdf/directions.h"
 #include "brdf/ggx_albedo.h"
+#include "brdf/linear_lobe.h"
 #include "brdf/microfacet.h"
 
 namespace pocketray {
@@ -76,6 +77,13 @@ Vec3T<T> scattered(T roughness, T grazing, const Vec3T<T>& specular, T cos_viewe
          (loss * static_cast<T>(1 / kPi) / ggx_between_rows(row, kGgxRows.lost));
 }
 
+// The factor of the diffuse lobe.
+template <class T>
+T diffuse_passes(const Material& material, T l, T v) {
+  const T ior = static_cast<T>(material.ior), root = (ior - 1) / (ior + 1), normal_reflectance = root * root;
+  return static_cast<T>(kDiffuseMax) * (1 - normal_reflectance) * (1 - fifth_power(1 - l)) * (1 - fifth_power(1 - v));
+}
+
 template <template <class> class Distribution, class T>
 Vec3T<T> value_of(const Material& material, const Vec3T<T>& specular, const Vec3T<T>& diffuse,
                   const LobeFrameT<T>& frame, const Vec3T<T>& viewer, const Vec3T<T>& to_light) {
@@ -90,12 +98,10 @@ Vec3T<T> value_of(const Material& material, const Vec3T<T>& specular, const Vec3
   const T slope = d.slope(normal, sum, sum_square);
   const T masking = l * d.root(to_viewer, v) + v * d.root(to_light, l);
   const T x = 1 - std::sqrt(sum_square) / 2;  // |v + l| = 2 v·h
-  const T ior = static_cast<T>(material.ior), root = (ior - 1) / (ior + 1), normal_reflectance = root * root;
   const T grazing = static_cast<T>(material.grazing), rise = x > 0 ? fifth_power(x) : 0;
   const Vec3T<T> fresnel = specular + (Vec3T<T>{grazing, grazing, grazing} - specular) * rise;
-  const T passes =
-      static_cast<T>(kDiffuseMax) * (1 - normal_reflectance) * (1 - fifth_power(1 - l)) * (1 - fifth_power(1 - v));
-  return diffuse * passes + fresnel * (d.square * static_cast<T>(0.5 / kPi) / (slope * slope * masking)) +
+  return diffuse * diffuse_passes(material, l, v) +
+         fresnel * (d.square * static_cast<T>(0.5 / kPi) / (slope * slope * masking)) +
          scattered(d.roughness, grazing, specular, v, l);
 }
 
@@ -178,6 +184,33 @@ double density(const Material& material, const LobeFrameD& frame, const Vec3d& v
   return scattered + (1 - share) * d.square / (kPi * slope * slope) / (2 * (cosine + d.root(to_viewer, cosine)));
 }
 
+template <class T>
+bool divide(const Material& material, const Vec3T<T>& specular, const Vec3T<T>& diffuse, const LobeFrameT<T>& frame,
+            const Vec3T<T>& to_viewer, LobePartsT<T>* parts) {
+  const T alpha = alpha_of<T>(material), grazing = static_cast<T>(material.grazing), least = static_cast<T>(kCosineMin);
+  const ViewerPlane<T> plane(frame.normal, above_horizon(frame.normal, to_viewer));
+  T parameters[4], above;
+  find_linear_parameters(kGgxLinear, T(kGgxLinearStep), alpha, plane.cosine, parameters);
+  set_ggx_lobe(frame.normal, plane, alpha, parameters, parts, &above);
+  parts->albedo = ggx_albedo_once(alpha, specular, grazing, plane.cosine) / above;
+  const T v = plane.cosine > least ? plane.cosine : least;
+  parts->roughness = static_cast<T>(material.roughness);
+  parts->diffuse = diffuse * diffuse_passes(material, T(1), v);
+  const GgxCell<T> row = ggx_row(parts->roughness);
+  const T loss = (1 - ggx_energy(row, ggx_column(v))) * static_cast<T>(1 / kPi);
+  parts->scattered = ggx_scattered_color(row, specular, grazing) * (loss / ggx_between_rows(row, kGgxRows.lost));
+  return true;
+}
+
+// The diffuse lobe, and what is scattered more than once.
+template <class T>
+Vec3T<T> rest_of(const LobePartsT<T>& parts, T l) {
+  return parts.diffuse * (1 - fifth_power(1 - l)) +
+         parts.scattered * (1 - ggx_energy(ggx_row(parts.roughness), ggx_column(l)));
+}
+
+constexpr LinearForm kLinear = {1, divide<float>, divide<double>, rest_of<float>, rest_of<double>};
+
 BrdfAlbedo albedo(const Material& material, const Vec3& specular, float cos_viewer) {
   return ggx_albedo(material.roughness, specular, material.grazing, std::fabs(cos_viewer));
 }
@@ -188,6 +221,6 @@ const BrdfInfo kGrainedGgxBrdf = {"ggx with grain", value<Grained>,   grained_pe
                                   sample<Grained>,  density<Grained>, albedo,       kDiffuseMax,
                                   nullptr};
 const BrdfInfo kGgxBrdf = {"ggx",         value<Even>, peak,        exact_value<Even>, sample<Even>,
-                           density<Even>, albedo,      kDiffuseMax, &kGrainedGgxBrdf};
+                           density<Even>, albedo,      kDiffuseMax, &kGrainedGgxBrdf,  &kLinear};
 
 }  // namespace pocketray

@@ -233,6 +233,15 @@ Vec3T<T> ggx_scattered_color(const GgxCell<T>& row, const Vec3T<T>& specular, T 
   return color;
 }
 
+// What the lobe reflects once.
+template <class T>
+Vec3T<T> ggx_albedo_once(T alpha, const Vec3T<T>& specular, T grazing, T cos_viewer) {
+  const GgxCell<T> row = ggx_row(alpha), column = ggx_column(cos_viewer);
+  const T scale = ggx_between(row, column, [](const std::uint16_t(&e)[2]) { return e[0]; }),
+          rise = ggx_between(row, column, [](const std::uint16_t(&e)[2]) { return e[1]; });
+  return specular * scale + Vec3T<T>{1, 1, 1} * (grazing * rise);
+}
+
 inline BrdfAlbedo ggx_albedo(float alpha, const Vec3& specular, float grazing, float cos_viewer) {
   const GgxCell<float> row = ggx_row(alpha), column = ggx_column(cos_viewer);
   const float scale = ggx_between(row, column, [](const std::uint16_t(&e)[2]) { return e[0]; }),

@@ -3,6 +3,7 @@
 #include "base/fmath.h"
 #include "brdf/brdf_list.h"
 #include "brdf/directions.h"
+#include "brdf/linear_lobe.h"
 
 namespace pocketray {
 namespace {
@@ -43,8 +44,25 @@ double density(const Material& material, const LobeFrameD& frame, const Vec3d& t
   return cosine > 0 ? (n + 1) / (2 * kPi) * unit_power(cosine, n) : 0;
 }
 
+template <class T>
+bool divide(const Material& material, const Vec3T<T>& specular, const Vec3T<T>& diffuse, const LobeFrameT<T>& frame,
+            const Vec3T<T>& to_viewer, LobePartsT<T>* parts) {
+  const T alpha = std::sqrt(2 / (static_cast<T>(material.exponent) + 2));
+  if (!(alpha < T(kPhongLinearAlphaMax))) return false;
+  const ViewerPlane<T> plane(frame.normal, to_viewer);
+  if (!(plane.cosine > 0)) return false;
+  T parameters[4];
+  find_linear_parameters(kPhongLinear, T(kPhongLinearStep), alpha, plane.cosine, parameters);
+  set_phong_lobe(frame.normal, plane, alpha, parameters, parts);
+  parts->albedo = specular * parameters[3];
+  parts->diffuse = diffuse, parts->scattered = {0, 0, 0};
+  return true;
+}
+
+constexpr LinearForm kLinear = {kPhongLinearPower, divide<float>, divide<double>, nullptr, nullptr};
+
 }  // namespace
 
-const BrdfInfo kPhongBrdf = {"phong", value, peak, exact_value, sample, density, nullptr, 1, nullptr};
+const BrdfInfo kPhongBrdf = {"phong", value, peak, exact_value, sample, density, nullptr, 1, nullptr, &kLinear};
 
 }  // namespace pocketray

@@ -9,6 +9,7 @@
 #include "base/fmath.h"
 #include "base/limits.h"
 #include "brdf/clear_coat.h"
+#include "brdf/linear_lobe.h"
 #include "indirect/environment.h"
 #include "scene/metallic_roughness.h"
 #include "shade/dielectric.h"
@@ -54,7 +55,8 @@ MaterialBound material_bound(const FrameData& frame, std::uint32_t index) {
   CHECK_LT(m.brdf, kBrdfCount);
   const BrdfInfo* lobe = kBrdfList[m.brdf];
   if (has(frame.mask, Effect::anisotropy) && has_grain(scene, index)) lobe = lobe->with_grain;
-  if (!is_zero(m.specular)) f = f * lobe->diffuse_max + max_component(lobe->peak(m));
+  const float linear = frame.light_polygons.count && lobe->linear ? kLinearPeakMax : 1;
+  if (!is_zero(m.specular)) f = f * lobe->diffuse_max + max_component(lobe->peak(m)) * linear;
   if (coat && has_lobe(*coat)) f += coat->strength * max_component(kBrdfList[kGgx]->peak(coat_bounds(*coat)));
   bound.scattered = f;
   return bound;

@@ -10,6 +10,7 @@
 #include "shade/form_factor.h"
 #include "shade/lights.h"
 #include "shade/polygon_light.h"
+#include "shade/polygon_share.h"
 #include "shade/texture.h"
 
 namespace pocketray {
@@ -183,21 +184,60 @@ bool view_lamp(const LightPolygon& polygon, const ReferenceSurface& s, Reference
   return true;
 }
 
+// The glossy lobe of a surface in two parts, and the light of the sharp one.
+struct ReferenceGloss {
+  const LinearForm* form = nullptr;  // null: it is not divided
+  LobePartsD parts = {};
+  Vec3d sent = {0, 0, 0};  // unblocked
+};
+ReferenceGloss find_gloss(const LightPolygon& polygon, const ReferenceSurface& s, const Vec3d& to_viewer) {
+  ReferenceGloss gloss;
+  if (is_zero(lobes_of(s).specular) || s.passes < 1) return gloss;
+  const LinearForm* form = glossy_lobe(s).linear;
+  const Vec3d diffuse = s.diffuse * (1 / kPi);
+  if (!form || !form->divide_exactly(lobes_of(s), s.specular, diffuse, s, to_viewer, &gloss.parts)) return gloss;
+  Vec3d corners[kLightCornerMax];
+  for (std::uint32_t i = 0; i < polygon.corner_count; ++i)
+    corners[i] = (to_double(polygon.corners[i]) - s.point) * static_cast<double>(polygon.scale);
+  gloss.form = form;
+  gloss.sent = gloss.parts.albedo * to_double(polygon.radiance) *
+               linear_share(gloss.parts, form->power, corners, polygon.corner_count, s.normal);
+  return gloss;
+}
+
 // The light of a lamp's points, weighted so that their sum, unblocked, is that of its polygon.
 Vec3d sum_lamp(const Reference& reference, const ReferenceSurface& s, const Vec3d& to_viewer, const LightRun& run,
                std::uint32_t first, const ReferenceLamp& lamp) {
   const FrameData& frame = *reference.world.frame;
-  Vec3d sum = {0, 0, 0};
-  double all = 0, highest = 0;
+  const LightPolygon& polygon = run.polygons[(first - run.begin) / frame.settings.points_per_area_light];
+  const ReferenceGloss gloss = find_gloss(polygon, s, to_viewer);
+  const Vec3d radiance = to_double(polygon.radiance), color = radiance / max_component(radiance);
+  Vec3d sum = {0, 0, 0}, glossy = {0, 0, 0};
+  double all = 0, all_glossy = 0, highest = 0;
   for (std::uint32_t i = first; i < first + frame.settings.points_per_area_light; ++i) {
     ReferenceLight light;
     if (!find_light(frame, run, i, s, to_viewer, &light)) continue;
     all += light.weight;
     highest = std::max(highest, dot(s.normal, light.direction) * light.distance);
-    sum += arriving(reference, s, i, light);
+    if (!gloss.form) {
+      sum += arriving(reference, s, i, light);
+      continue;
+    }
+    const Vec3d& d = light.direction;
+    const double cosine = dot(s.normal, d);
+    const Vec3d rest = gloss.form->exact_rest ? gloss.form->exact_rest(gloss.parts, cosine) : gloss.parts.diffuse;
+    const Vec3d local = {dot(gloss.parts.x, d), dot(gloss.parts.y, d), dot(gloss.parts.z, d)};
+    const double square = dot(local, local), fourth = square * square;
+    const double share = light.weight / (cosine * (gloss.form->power > 1 ? fourth * fourth * fourth : fourth));
+    light.sent = {1, 1, 1};
+    const Vec3d visibility = arriving(reference, s, i, light);
+    all_glossy += share, glossy += visibility * share;
+    sum += rest * visibility * light.weight;
   }
   if (!(all > 0)) return {0, 0, 0};
-  return sum * (lamp.irradiance / all * (lamp.highest > 3 * highest ? 3 * highest / lamp.highest : 1));
+  sum = sum * (lamp.irradiance / all);
+  if (gloss.form) sum = sum * color + glossy * gloss.sent * (1 / all_glossy);
+  return sum * (lamp.highest > 3 * highest ? 3 * highest / lamp.highest : 1);
 }
 
 }  // namespace

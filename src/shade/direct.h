@@ -158,6 +158,94 @@ template <EffectMask mask>
   return all >= kShareMin ? seen * (1 / all) : Vec3{0, 0, 0};
 }
 
+// The form of the material's glossy lobe there, if a polygon's share of it has one.
+template <EffectMask mask>
+inline const LinearForm* linear_form(const FrameData& frame, const LitSurface& to) {
+  if constexpr (!has(mask, Effect::specular)) return nullptr;
+  if (is_zero(to.material.specular)) return nullptr;
+  if constexpr (has(mask, Effect::clear_coat))
+    if (to.surface.coat.passes < 1) return nullptr;
+  if constexpr (has(mask, Effect::metallic_roughness)) return lobe_at(frame, to.surface, to.material).linear;
+  return kBrdfList[to.material.brdf]->linear;
+}
+
+// Adds the light of a lamp at a glossy surface: the closed forms of the sharp part and of the rest, each times the
+// share that arrives, of points weighted by what they add to it. For the sharp part, by a distribution with long tails:
+// where the lobe hardly sees any of the points, the nearest counts. False: the lobe cannot be divided.
+template <EffectMask mask>
+[[gnu::noinline]] bool add_glossy_lamp(Tracer* tracer, const LitSurface& to, const LightRun& run, std::uint32_t first,
+                                       const PolygonView& view, const Vec3& irradiance, const TilePolygon* tile,
+                                       const LinearForm& form, Vec3* sum) {
+  const FrameData& frame = *tracer->frame;
+  const Surface& s = to.surface;
+  const Material& m = to.material;
+  const std::uint32_t count = frame.settings.points_per_area_light;
+  const LightPolygon& polygon = run.polygons[(first - run.begin) / count];
+  LobeParts parts;
+  const Vec3 specular = reflectance_at(s, m.specular, m.specular_tinted);
+  if (!form.divide(m, specular, to.diffuse, s, to.to_viewer, &parts)) return false;
+  effect_entered<Effect::specular>();
+  const Vec3 gloss = min(polygon.radiance * parts.albedo * lobe_share(polygon, s, form, parts),
+                         {kRadianceMax, kRadianceMax, kRadianceMax});
+  const Vec3 matte = parts.diffuse * irradiance;  // without `rest`
+  constexpr bool kShadow = has(mask, Effect::shadow);
+  if (!form.rest) {
+    const float bound = max_component((gloss + matte) * to.weight);
+    if (!(bound > 0)) return true;
+    if (kShadow && leave_out(tracer, bound)) return true;
+  }
+  bool all_seen = !kShadow && view.is_whole;
+  if (kShadow && view.is_whole && tile) {
+    constexpr bool kClear = has(mask, Effect::refraction) || has(mask, Effect::alpha_blend);
+    const bool blocked = tile->blocked[tracer->tile_pixel];
+    all_seen = !kClear && tile->open[tracer->tile_pixel];
+    if (blocked || all_seen) {
+      effect_entered<Effect::shadow>();
+      if (!frame.point_groups.groups.count) tracer->rays[static_cast<int>(RayKind::shadow)] += count;
+    }
+    if (blocked) return true;
+  }
+  if (all_seen && !form.rest) {
+    *sum += gloss + matte;
+    return true;
+  }
+  Vec3 seen_gloss = {0, 0, 0}, seen_rest = {0, 0, 0}, common = {1, 1, 1};
+  float all_gloss = 0, all = 0, highest = 0;
+  bool any = false, alike = true;  // whether all points are as visible as the first
+  for (std::uint32_t i = first; i < first + count; ++i) {
+    LightSample sample;
+    if (!lights_up(frame, s, run, frame.lights[i], &sample)) continue;
+    const Vec3& to_light = sample.direction;
+    const float arriving = max_component(sample.irradiance), cosine = dot(s.normal, to_light);
+    const float share = arriving * cosine;
+    all += share;
+    if (view.highest > 0) highest = std::max(highest, dot(s.normal, sample.to_light) * polygon.scale);
+    Vec3 visibility = {1, 1, 1};
+    if (!all_seen) {
+      if constexpr (kShadow)
+        visibility = shadow<mask>(tracer, s, run, i, &sample, to.at_first_hit);
+      else if (is_below(s, to_light))
+        visibility = {0, 0, 0};
+      const Vec3 local = {dot(parts.x, to_light), dot(parts.y, to_light), dot(parts.z, to_light)};
+      const float square = dot(local, local), fourth = square * square;
+      const float weight = arriving / (form.power > 1 ? fourth * fourth * fourth : fourth);
+      all_gloss += weight, seen_gloss += visibility * weight;
+    }
+    seen_rest += (form.rest ? form.rest(parts, cosine) * visibility : visibility) * share;
+    if (!any) common = visibility;
+    any = true, alike = alike && visibility == common;
+  }
+  if (!any || (!(all >= kShareMin) && (form.rest || !alike))) return true;
+  Vec3 light_out = gloss * common;
+  if (!alike) light_out = all_gloss >= kShareMin ? gloss * (seen_gloss * (1 / all_gloss)) : Vec3{0, 0, 0};
+  if (form.rest)
+    light_out += seen_rest * (1 / all) * irradiance;
+  else
+    light_out += matte * (alike ? common : seen_rest * (1 / all));
+  *sum += view.highest > 3 * highest ? light_out * (3 * highest / view.highest) : light_out;
+  return true;
+}
+
 // The sum and the light of a run's lamps, of which some are polygons.
 template <EffectMask mask>
 [[gnu::noinline]] Vec3 add_area_lights(Tracer* tracer, const LitSurface& to, const LightRun& run, Vec3 sum) {
@@ -194,6 +282,8 @@ template <EffectMask mask>
         continue;
       }
     }
+    const LinearForm* form = linear_form<mask>(frame, to);
+    if (form && add_glossy_lamp<mask>(tracer, to, run, first, view, irradiance, tile, *form, &sum)) continue;
     sum += weighted_points<mask>(tracer, to, run, first, view, irradiance);
   }
   return sum;

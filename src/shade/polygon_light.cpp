@@ -2,30 +2,14 @@
 
 #include <algorithm>
 
+#include "base/check.h"
 #include "base/limits.h"
 #include "effect/effect_probe.h"
 #include "shade/form_factor.h"
+#include "shade/polygon_share.h"
 
 namespace pocketray {
 namespace {
-
-// atan(x) / x for a square x² in [0, 1], with a relative error of 1e-7: a fit of least maximum.
-float arc_ratio(float square) {
-  const float high = ((-0.00469327345f * square + 0.0242523942f) * square - 0.0594863817f) * square + 0.0991429240f;
-  return (((high * square - 0.140194803f) * square + 0.199697241f) * square - 0.333319902f) * square + 0.999999881f;
-}
-
-// The angle between two vectors over the length of their cross product, which is not 0: by its tangent, or by that of
-// its complement if the angle is nearer to a right one.
-float angle_over_cross(float cross_square, float dot_product) {
-  const float dot_square = dot_product * dot_product;
-  if (cross_square <= dot_square) {
-    const float inverse = 1 / dot_product, ratio = arc_ratio(cross_square * inverse * inverse) * inverse;
-    return dot_product > 0 ? ratio : kPiF / std::sqrt(cross_square) + ratio;
-  }
-  const float inverse = 1 / std::sqrt(cross_square), x = dot_product * inverse;
-  return (kPiF / 2 - x * arc_ratio(x * x)) * inverse;
-}
 
 // Twice π times the form factor of the polygon with these corners, seen from the origin [Baum, Rushmeier, Winget 1989,
 // eq. 7]. An edge that points at the origin adds nothing.
@@ -79,6 +63,15 @@ PolygonView view_polygon(const LightPolygon& polygon, const Surface& s) {
 
 Vec3 polygon_irradiance(const LightPolygon& polygon, const PolygonView& view) {
   return min(polygon.radiance * (kPiF * view.form_factor), Vec3{kRadianceMax, kRadianceMax, kRadianceMax});
+}
+
+float lobe_share(const LightPolygon& polygon, const Surface& s, const LinearForm& form, const LobeParts& lobe) {
+  effect_entered<Effect::area_light>();
+  CHECK_LE(polygon.corner_count, kLightCornerMax);
+  CHECK_EQ(form.power % 2, 1u);
+  Vec3 corners[kLightCornerMax];
+  for (std::uint32_t i = 0; i < polygon.corner_count; ++i) corners[i] = (polygon.corners[i] - s.point) * polygon.scale;
+  return linear_share(lobe, form.power, corners, polygon.corner_count, s.normal);
 }
 
 }  // namespace pocketray

@@ -21,4 +21,7 @@ PolygonView view_polygon(const LightPolygon& polygon, const Surface& s);
 // Irradiance on a surface with that view of the polygon, at most kRadianceMax.
 Vec3 polygon_irradiance(const LightPolygon& polygon, const PolygonView& view);
 
+// The share of a lobe's distribution that the polygon fills above the horizon; the surface has a near view of it.
+float lobe_share(const LightPolygon& polygon, const Surface& s, const LinearForm& form, const LobeParts& lobe);
+
 }  // namespace pocketray
