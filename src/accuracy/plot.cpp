@@ -104,13 +104,14 @@ Plot front_plot(const Sweep& sweep, const std::string& plot_name) {
              " with points " + style;
   }
   if (plots.empty()) plots = "1/0 title 'nothing was measured'";
-  std::string body =
-      frame_commands(frame) + axis_commands(x, 'x') + axis_commands(y, 'y') + "set title 'Error over time, against " +
-      reference_text(sweep.reference) + ": lower left is better'\nset xlabel 'milliseconds per frame'\n" +
-      "set ylabel 'FLIP' offset 1.2,0\nset key at screen 0.5, screen 0.01 center bottom horizontal samplen 1 "
-      "maxcols 2\n" +
-      unclaimed_commands(y, limit, "not claimed: under 10 x the reference's own error") +
-      label_commands(frame, points, labels, "black") + "plot " + plots + "\n";
+  std::string body = frame_commands(frame) + axis_commands(x, 'x') + axis_commands(y, 'y') +
+                     "set title 'Error over time, against " + reference_text(sweep.reference) +
+                     "'\nset xlabel 'milliseconds per frame'\n" +
+                     "set ylabel 'FLIP, lower is better' offset 1.2,0\nset key at screen 0.5, screen 0.01 center "
+                     "bottom horizontal samplen 1 "
+                     "maxcols 2\n" +
+                     unclaimed_commands(y, limit, "not claimed: under 10 x the reference's own error") +
+                     label_commands(frame, points, labels, "black") + "plot " + plots + "\n";
   return {plot_name, script_of(plot_name, frame.height, data, body)};
 }
 

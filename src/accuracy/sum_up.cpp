@@ -128,7 +128,8 @@ void sum_up(const SweepPlan& plan, const std::vector<PointFigures>& figures, Swe
 
 Sweep against_other(const Sweep& sweep) {
   Sweep other = sweep;
-  other.knobs.clear(), other.strips.clear(), other.reference_picture = Levels();
+  other.strips.clear(), other.reference_picture = Levels();
+  for (KnobFigures& knob : other.knobs) knob.has_slope = false, knob.ms_per_flip = kNotMeasured;
   other.reference = sweep.reference == "model" ? "physical" : "model";
   other.reference_samples = sweep.other_samples, other.other_samples = sweep.reference_samples;
   other.reference_flip = sweep.other_flip, other.other_flip = sweep.reference_flip;

@@ -17,7 +17,8 @@ struct PointFigures {
 // with slopes and prices. Takes the size of the picture and the reference's errors from *sweep.
 void sum_up(const SweepPlan& plan, const std::vector<PointFigures>& figures, Sweep* sweep);
 
-// The same figures as seen from the other kind of reference, without knobs: ꟻLIP alone is known against it.
+// The same figures as seen from the other kind of reference, without slopes, prices and strips: ꟻLIP alone is known
+// against it.
 Sweep against_other(const Sweep& sweep);
 
 }  // namespace pocketray

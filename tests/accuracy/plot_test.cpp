@@ -47,6 +47,7 @@ TEST_CASE("plot_front_has_a_point_for_all_that_was_measured") {
   CHECK(points_of(plot, "front") == static_cast<int>(front_of(sweep).size()));
   CHECK(has(plot.script, "set label '1"));
   CHECK(has(plot.script, "not claimed"));
+  CHECK(has(plot.script, "set title 'Error over time, against the converged model'"));
 }
 
 // Goal: each method of indirect light has a line through what no other of it beats, against full light transport

@@ -186,6 +186,8 @@ TEST_CASE("sweep_is_seen_from_either_reference") {
   CHECK((other.reference == "physical" && other.reference_samples == 10 && other.reference_flip == 2e-5));
   CHECK((same.reference == "model" && same.reference_samples == 100 && same.other_samples == 10));
   REQUIRE(other.measured.size() == sweep.measured.size());
+  CHECK(other.knobs.size() == sweep.knobs.size());
+  for (const KnobFigures& knob : other.knobs) CHECK((!knob.has_slope && std::isnan(knob.ms_per_flip)));
   int front = 0, shared = 0;
   for (std::size_t i = 0; i < sweep.measured.size(); ++i) {
     CHECK(other.measured[i].flip == sweep.measured[i].flip_other);
