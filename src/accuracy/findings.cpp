@@ -68,6 +68,19 @@ std::vector<const Measured*> method_front(const Sweep& sweep, const std::string&
   return front;
 }
 
+std::string own_settings(const Measured& m) {
+  if (m.knob == "baseline" || m.knob == "indirect") return "";
+  if (m.knob != "several") return m.knob + " " + m.value;
+  std::string own;
+  for (std::size_t begin = 0; begin < m.value.size();) {
+    const std::size_t end = std::min(m.value.find(", ", begin), m.value.size());
+    const std::string setting = m.value.substr(begin, end - begin);
+    if (setting.rfind("indirect ", 0) != 0) own += (own.empty() ? "" : ", ") + setting;
+    begin = end + 2;
+  }
+  return own;
+}
+
 KnobEnds ends_of(const Sweep& sweep, const std::string& knob) {
   KnobEnds ends;
   for (const Measured* m : values_of(sweep, knob)) {

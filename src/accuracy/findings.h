@@ -23,6 +23,9 @@ std::vector<std::string> methods_of(const Sweep& sweep);
 // and in ꟻLIP against full light transport, fastest first.
 std::vector<const Measured*> method_front(const Sweep& sweep, const std::string& method);
 
+// The settings that set a configuration off from others of its method: "samples 4, virtual-lights 256".
+std::string own_settings(const Measured& m);
+
 // A knob's configurations with or without figures, in the order of its values.
 std::vector<const Measured*> values_of(const Sweep& sweep, const std::string& knob);
 

@@ -1,5 +1,3 @@
-#include <algorithm>
-
 #include "accuracy/findings.h"
 #include "accuracy/gnuplot.h"
 #include "accuracy/plot.h"
@@ -8,19 +6,9 @@
 namespace pocketray {
 namespace {
 
-// The settings that set a configuration off from others of its method: "samples 4, virtual-lights 256".
-std::string own_settings(const Measured& m) {
-  if (m.knob == "baseline" || m.knob == "indirect") return "";
-  if (m.knob != "several") return m.knob + " " + m.value;
-  std::string own;
-  for (std::size_t begin = 0; begin < m.value.size();) {
-    const std::size_t end = std::min(m.value.find(", ", begin), m.value.size());
-    const std::string setting = m.value.substr(begin, end - begin);
-    if (setting.rfind("indirect ", 0) != 0) own += (own.empty() ? "" : ", ") + setting;
-    begin = end + 2;
-  }
-  return own;
-}
+// Longer labels would cover the lines; the page's table has them all.
+constexpr std::size_t kLabelMax = 20;
+constexpr double kLabelStep = 0.12;  // between points of a line that are labelled, of the plot's width
 
 }  // namespace
 
@@ -39,11 +27,15 @@ Plot method_plot(const Sweep& sweep) {
   std::vector<std::string> labels;
   for (std::size_t i = 0; i < methods.size(); ++i) {
     std::string lines;
+    double labelled = -1;
     for (const Measured* m : method_front(sweep, methods[i])) {
       const double ms = ms_of(sweep, m->ns_per_pixel.value), flip = physical_flip(sweep, *m);
       lines += format("%.8g %.8g\n", drawn_value(x, ms), drawn_value(y, flip));
       points.push_back({place_on(x, ms), place_on(y, flip)});
-      labels.push_back(own_settings(*m));
+      const std::string label = own_settings(*m);
+      const bool is_labelled = label.size() <= kLabelMax && place_on(x, ms) - labelled >= kLabelStep;
+      if (is_labelled) labelled = place_on(x, ms);
+      labels.push_back(is_labelled ? label : "");
     }
     const std::string block = format("method%zu", i);
     data += data_block(block, lines);

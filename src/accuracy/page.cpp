@@ -127,12 +127,13 @@ std::string other_section(const Sweep& sweep, const PagePictures& pictures) {
          pair(plot_figure(pictures, other_front(sweep)), front_table(other));
 }
 
-std::string methods_section(const PagePictures& pictures) {
-  const std::string plot = plot_figure(pictures, "indirect");
-  if (plot.empty()) return "";
+std::string methods_section(const Sweep& sweep, const PagePictures& pictures) {
+  if (methods_of(sweep).size() < 2) return "";
   return "<h2>Methods of indirect light</h2>\n<p>Each with every combination of its own settings, with the baseline’s "
-         "samples and with four: those that no other of the method beats, against full light transport.</p>\n" +
-         plot;
+         "samples and with four, and whatever else was measured with it: those that no other of the method beats, "
+         "against "
+         "full light transport.</p>\n" +
+         pair(plot_figure(pictures, "indirect"), method_table(sweep));
 }
 
 // How rows were sent, if they were.
@@ -192,7 +193,7 @@ std::string page_of(const Sweep& sweep, const PagePictures& pictures) {
       "FLIP " +
       figure(kClaimFactor * sweep.reference_flip, 2) + ".</p>\n" +
       pair(plot_figure(pictures, "front"), front_table(sweep));
-  text += other_section(sweep, pictures) + methods_section(pictures);
+  text += other_section(sweep, pictures) + methods_section(sweep, pictures);
   std::string links;
   for (const KnobFigures& knob : sweep.knobs)
     links += "<a href=\"#" + file_word(knob.name) + "\">" + escaped(knob.name) + "</a> ";

@@ -86,6 +86,15 @@ std::string front_table(const Sweep& sweep) {
   return boxed(headings({"", "setting", "ms per frame", "× baseline", "FLIP", "RMSE"}), rows);
 }
 
+std::string method_table(const Sweep& sweep) {
+  std::string rows;
+  for (const std::string& method : methods_of(sweep))
+    for (const Measured* m : method_front(sweep, method))
+      rows += "<tr><th>" + escaped(method) + "</th>" + cell(escaped(own_settings(*m))) +
+              cell(ms_text(sweep, m->ns_per_pixel)) + cell(figure(physical_flip(sweep, *m))) + "</tr>\n";
+  return boxed(headings({"method", "settings", "ms per frame", "FLIP"}), rows);
+}
+
 std::string value_table(const Sweep& sweep, const std::string& knob) {
   std::vector<const Measured*> values = values_of(sweep, knob);
   bool counted = false, sent = is_paid_in_bytes(ends_of(sweep, knob));

@@ -10,6 +10,8 @@ namespace pocketray {
 std::string price_table(const Sweep& sweep);
 // The Pareto front's settings, numbered as in its plot.
 std::string front_table(const Sweep& sweep);
+// The front of each method of indirect light, as in its plot.
+std::string method_table(const Sweep& sweep);
 // All figures of one knob's values; for "several", of the combined settings.
 std::string value_table(const Sweep& sweep, const std::string& knob);
 

@@ -41,7 +41,7 @@ std::string label_commands(const PlotFrame& frame, const std::vector<PlotPoint>&
   std::string commands;
   std::vector<Label> labels = place_labels(area_of(frame), points, texts);
   for (std::size_t i = 0; i < labels.size(); ++i)
-    if (labels[i].placed)
+    if (labels[i].placed && !texts[i].empty())
       commands += "set label " + gnuplot_string(texts[i]) +
                   format(" at graph %.4f, graph %.4f %s front tc rgb '%s'\n", labels[i].at.x, labels[i].at.y,
                          kAligns[labels[i].align + 1], color);

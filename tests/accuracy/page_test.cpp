@@ -199,15 +199,16 @@ TEST_CASE("page_tells_what_is_paid_in_bytes") {
 TEST_CASE("page_shows_either_reference_and_each_method") {
   Sweep sweep = sample_sweep();
   CHECK(!has(page_of(sweep, {}), "The front against"));
+  CHECK(!has(page_of(sweep, {}), "Methods of indirect light"));
   add_methods(&sweep);
   PagePictures pictures;
-  CHECK(!has(page_of(sweep, pictures), "Methods of indirect light"));
   pictures.plots["indirect"] = "<svg viewBox=\"0 0 1 1\"></svg>\n";
   std::string page = page_of(sweep, pictures);
   CHECK(markup_fault(page) == "");
   CHECK(has(page, "The front against physical"));
   CHECK(has(page, "of 256 samples per pixel, whose own error is FLIP 0.030"));
   CHECK(has(page, "Methods of indirect light"));
+  CHECK(has(page, "<tr><th>none</th><td>"));
   sweep.reference = "physical";
   CHECK(has(page_of(sweep, pictures), "The front against model"));
 }

@@ -83,7 +83,8 @@ TEST_CASE("plot_of_methods_names_their_settings") {
   sweep.measured.push_back(
       sample_measured("several", "samples 4, indirect instant-radiosity, virtual-lights 256", 90, 0.03));
   add_methods(&sweep);
-  CHECK(has(method_plot(sweep).script, "set label 'samples 4, virtual-lights 256' at"));
+  CHECK(own_settings(sweep.measured.back()) == "samples 4, virtual-lights 256");
+  CHECK(!has(method_plot(sweep).script, "samples 4"));  // too long
   sweep.measured.back().value = "indirect instant-radiosity, virtual-lights 256";
   CHECK(has(method_plot(sweep).script, "set label 'virtual-lights 256' at"));
 }
