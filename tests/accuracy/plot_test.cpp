@@ -71,7 +71,9 @@ TEST_CASE("plot_of_methods_has_the_front_of_each") {
   const std::size_t before = front.size();
   const_cast<Measured*>(front.back())->is_choice = false;
   CHECK(method_front(sweep, "none").size() == before - 1);
+  CHECK(physical_flip(sweep, sweep.measured[1]) == sweep.measured[1].flip_other);
   sweep.reference = "physical";
+  CHECK(physical_flip(sweep, sweep.measured[1]) == sweep.measured[1].flip);
   for (Measured& m : sweep.measured) std::swap(m.flip, m.flip_other);
   CHECK(method_plot(sweep).script.find(plot.script.substr(0, 200)) == 0);
   CHECK(methods_of(sample_sweep()).empty());
