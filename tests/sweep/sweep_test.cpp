@@ -427,7 +427,6 @@ TEST_CASE("accuracy_refuses_damaged_files") {
     CHECK(std::string(status.message).find("--restart") != std::string::npos);
   }
   const std::pair<const char*, const char*> senseless[] = {
-      // what no sweep gives
       {"12.25", "1e300"}, {"12.25", "-1.0"},   {"12.25", "\"none\""}, {"12.25", "0"},   {"7654.5", "1e300"},
       {"7654.5", "-1.0"}, {"4321.5", "1e300"}, {"4321.5", "-1.0"},    {"0.0625", "1.5"}};
   for (const auto& change : senseless) {
