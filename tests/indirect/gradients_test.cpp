@@ -310,13 +310,14 @@ TEST_CASE("gradients_are_planned_on_request") {
   settings.reconstruction = R::bicubic;
   CHECK(change_settings(&smooth->renderer, settings).ok);
   // Other methods may turn to it between frames, if it is not switched off.
-  settings.indirect = indirect_choice(Effect::ambient), settings.reconstruction = R::cubic;
+  settings.indirect = IndirectChoice::none, settings.reconstruction = R::cubic;
   auto turned = make_renderer(mesh.scene, settings);
+  CHECK_FALSE(has(turned->renderer.effects.mask, Effect::radiosity));
   settings.indirect = indirect_choice(Effect::radiosity);
   REQUIRE(change_settings(&turned->renderer, settings).ok);
   REQUIRE(prepare_frame(&turned->renderer, 0).ok);
   CHECK(trace_ray(turned->renderer, {.6f, .3f, 1}, {0, 0, -1}).x == seen);
-  settings.indirect = indirect_choice(Effect::ambient), settings.forced_off = bit(Effect::radiosity);
+  settings.indirect = IndirectChoice::none, settings.forced_off = bit(Effect::radiosity);
   CHECK(make_renderer(mesh.scene, settings)->renderer.frame.indirect.prepared[2] == nullptr);
   settings.forced_off = 0, settings.indirect = indirect_choice(Effect::radiosity);
   // A scene without such triangles takes nothing.
