@@ -192,7 +192,7 @@ bool divide(const Material& material, const Vec3T<T>& specular, const Vec3T<T>& 
   T parameters[4], above;
   find_linear_parameters(kGgxLinear, T(kGgxLinearStep), alpha, plane.cosine, parameters);
   set_ggx_lobe(frame.normal, plane, alpha, parameters, parts, &above);
-  parts->albedo = ggx_albedo_once(alpha, specular, grazing, plane.cosine) / above;
+  parts->albedo = ggx_albedo_once(ggx_shares(alpha, plane.cosine), specular, grazing) / above;
   const T v = plane.cosine > least ? plane.cosine : least;
   parts->roughness = static_cast<T>(material.roughness);
   parts->diffuse = diffuse * diffuse_passes(material, T(1), v);

@@ -233,21 +233,26 @@ Vec3T<T> ggx_scattered_color(const GgxCell<T>& row, const Vec3T<T>& specular, T 
   return color;
 }
 
-// What the lobe reflects once.
+// Of light that the lobe reflects once: the shares that go with the reflectance along the normal and at grazing angles.
 template <class T>
-Vec3T<T> ggx_albedo_once(T alpha, const Vec3T<T>& specular, T grazing, T cos_viewer) {
+struct GgxShares {
+  T normal, grazing;
+};
+template <class T>
+GgxShares<T> ggx_shares(T alpha, T cos_viewer) {
   const GgxCell<T> row = ggx_row(alpha), column = ggx_column(cos_viewer);
-  const T scale = ggx_between(row, column, [](const std::uint16_t(&e)[2]) { return e[0]; }),
-          rise = ggx_between(row, column, [](const std::uint16_t(&e)[2]) { return e[1]; });
-  return specular * scale + Vec3T<T>{1, 1, 1} * (grazing * rise);
+  return {ggx_between(row, column, [](const std::uint16_t(&e)[2]) { return e[0]; }),
+          ggx_between(row, column, [](const std::uint16_t(&e)[2]) { return e[1]; })};
+}
+template <class T>
+Vec3T<T> ggx_albedo_once(const GgxShares<T>& shares, const Vec3T<T>& specular, T grazing) {
+  return specular * shares.normal + Vec3T<T>{1, 1, 1} * (grazing * shares.grazing);
 }
 
 inline BrdfAlbedo ggx_albedo(float alpha, const Vec3& specular, float grazing, float cos_viewer) {
-  const GgxCell<float> row = ggx_row(alpha), column = ggx_column(cos_viewer);
-  const float scale = ggx_between(row, column, [](const std::uint16_t(&e)[2]) { return e[0]; }),
-              rise = ggx_between(row, column, [](const std::uint16_t(&e)[2]) { return e[1]; });
-  return {specular * scale + Vec3{1, 1, 1} * (grazing * rise),
-          ggx_scattered_color(row, specular, grazing) * (1 - scale - rise)};
+  const GgxShares<float> shares = ggx_shares(alpha, cos_viewer);
+  return {ggx_albedo_once(shares, specular, grazing),
+          ggx_scattered_color(ggx_row(alpha), specular, grazing) * (1 - shares.normal - shares.grazing)};
 }
 
 }  // namespace pocketray

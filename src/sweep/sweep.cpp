@@ -115,8 +115,9 @@ Status find_errors(const Run& run, Rig* rig, const SweepPoint& point, PointFigur
   CHECK_EQ(light.size(), run.reference.mean.size());
   const ReferencePictures& reference = run.reference;
   double ppd = run.options.pixels_per_degree;
-  f->flip = mean_of(flip_errors(reference.encoded, encoded_levels(levels), width, height, ppd));
-  f->flip_other = mean_of(flip_errors(run.other.encoded, encoded_levels(levels), width, height, ppd));
+  const auto shown = encoded_levels(levels);
+  f->flip = mean_of(flip_errors(reference.encoded, shown, width, height, ppd));
+  f->flip_other = mean_of(flip_errors(run.other.encoded, shown, width, height, ppd));
   f->flip_before = mean_of(flip_errors(reference.encoded, encoded_light(light), width, height, ppd));
   f->errors = picture_errors(reference.mean, light);
   f->errors.rmse = unbiased_rmse(reference.one, reference.other, light);
