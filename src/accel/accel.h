@@ -37,7 +37,7 @@ struct AccelTraversal {
   // accelerator.
   void (*closest_packet)(const Accel& accel, const RayPacket& rays, const HitFilter* filter, Hit* hits,
                          TraceStats* stats);
-  // Whether the ray hits anything in (0, ray.t_max).
+  // Whether the ray hits anything in (0, ray.t_max) but the triangles that it joins.
   bool (*occluded)(const Accel& accel, const Ray& ray, const HitFilter* filter, TraceStats* stats);
   // occluded() for every ray of the packet; bit i is ray i.
   std::uint64_t (*occluded_packet)(const Accel& accel, const SegmentPacket& rays, const HitFilter* filter,

@@ -65,9 +65,9 @@ void brute_closest(const Accel& accel, const Ray& ray, const HitFilter* filter, 
 
 bool brute_occluded(const Accel& accel, const Ray& ray, const HitFilter* filter, TraceStats* stats) {
   bool any = false;
-  for_each_hit(accel, ray, filter, stats, [&](std::uint32_t, const Hit&) {
-    any = true;
-    return false;
+  for_each_hit(accel, ray, filter, stats, [&](std::uint32_t triangle, const Hit&) {
+    any = !joins(ray, triangle);
+    return !any;
   });
   return any;
 }

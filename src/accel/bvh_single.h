@@ -24,8 +24,9 @@ struct Search {
   float t_max;
   float t;  // of the best hit; t_max if none
   std::uint32_t triangle;
-  double b, c, sum;  // its weights; with a filter …
-  float u, v;        // … the quotients instead
+  double b, c, sum;        // its weights; with a filter …
+  float u, v;              // … the quotients instead
+  std::uint32_t from, to;  // as in Ray
 };
 
 // False if there is nothing to hit.
@@ -50,7 +51,7 @@ inline bool start_search(const Accel& accel, const Ray& ray, const HitFilter* fi
   make_leaf_ray(ray, axes, &search->leaf);
   search->filter = filter;
   search->t = search->t_max = ray.t_max;
-  search->triangle = kNoTriangle;
+  search->triangle = kNoTriangle, search->from = ray.from, search->to = ray.to;
   return true;
 }
 
@@ -172,6 +173,15 @@ inline void search_closest(const Tree& bvh, const BoxRay& box, Search* search, T
   }
 }
 
+// Without the lanes of triangles that the ray joins.
+inline unsigned without_ends(const Search& search, const TriangleBlock& block, unsigned pass) {
+  for (unsigned left = pass; left; left &= left - 1) {
+    const std::uint32_t triangle = block.triangle[__builtin_ctz(left)];
+    if (triangle == search.from || triangle == search.to) pass ^= left & (0 - left);
+  }
+  return pass;
+}
+
 template <bool kFiltered, class Tree>
 inline bool search_any(const Tree& bvh, const BoxRay& box, const Search& search, TraceStats* stats) {
   Counts counts;
@@ -200,6 +210,7 @@ inline bool search_any(const Tree& bvh, const BoxRay& box, const Search& search,
       const TriangleBlock& block = bvh.leaf(child, &scratch);
       LeafLanes lanes = test_leaf<!kFiltered>(search.leaf, &sure, block);
       lanes.pass &= lanes_in_use(child);
+      if (lanes.pass) lanes.pass = without_ends(search, block, lanes.pass);
       if (lanes.pass)
         found = (!kFiltered && (lanes.pass & lanes.sure)) ||
                 any_crossing<kFiltered>(search, block, lanes.pass, lanes.doubtful);

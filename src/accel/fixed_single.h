@@ -224,6 +224,7 @@ bool occluded_ray(const FixedQuery<Tree>& query, const Ray& begin) {
     int count = static_cast<int>(leaf_triangle_count(child));
     counts.triangles += static_cast<std::uint32_t>(count);
     for (int lane = 0; lane < count && !found; ++lane) {
+      if (joins(begin, block.triangle[lane])) continue;
       FixedTriangle v = fixed_triangle(block, lane, frame);
       found = is_blocked(ray, end, query.filter, block, lane, v);
     }

@@ -19,6 +19,7 @@ bool test_triangles(GridWalk* w, const std::uint32_t* ids, std::uint32_t count) 
     std::uint32_t id = ids[i], *tested = &w->tested[id % kMailboxSize];
     if (*tested == id) continue;
     *tested = id;
+    if (kAny && (id == w->from || id == w->to)) continue;
     if (w->stats) ++w->stats->triangles;
     const Triangle& triangle = w->accel.triangles[id];
     Hit hit;
@@ -133,7 +134,8 @@ bool start_walk(const Ray& ray, const HitFilter* filter, TraceStats* stats, Grid
   CHECK_LE(sizeof(GridHeader) + sizeof(GridNode), accel.data.bytes());
   w->hit.triangle = kNoTriangle;
   if (!(ray.t_max > 0) || is_empty(accel.bounds) || !make_sheared_ray(ray, &w->ray)) return false;
-  w->filter = filter, w->stats = stats, w->t_max = ray.t_max;
+  w->filter = filter, w->stats = stats;
+  w->t_max = ray.t_max, w->from = ray.from, w->to = ray.to;
   w->clock = w->grid.header().clock.load(std::memory_order_relaxed);
   w->main = w->ray.kz, w->minor[0] = w->ray.kx, w->minor[1] = w->ray.ky;
   double d = double(ray.direction[w->main]);

@@ -32,6 +32,7 @@ struct GridWalk {
   double origin[3], slope[3];  // per unit of distance; |slope| <= 1
   double padding, limit;       // farther hits do not matter
   float t_max;
+  std::uint32_t from, to;  // as in Ray
   Hit hit;
   std::uint32_t tested[kMailboxSize];
 };

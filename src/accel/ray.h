@@ -9,11 +9,15 @@ namespace pocketray {
 constexpr std::uint32_t kNoTriangle = 0xFFFFFFFFu;
 
 // Points origin + t·direction with 0 < t < t_max. The direction need not be unit; t is in units of its length. A ray
-// with a non-finite origin or a zero or non-finite direction hits nothing (HARDCASES row 9).
+// with a non-finite origin or a zero or non-finite direction hits nothing (HARDCASES row 9). A shadow ray can name the
+// triangles on which it begins and ends: these do not block it (occluded() alone looks at them), so that no rounding
+// decides there, and no time is spent on it.
 struct Ray {
   Vec3 origin, direction;
   float t_max;
+  std::uint32_t from = kNoTriangle, to = kNoTriangle;
 };
+inline bool joins(const Ray& ray, std::uint32_t triangle) { return triangle == ray.from || triangle == ray.to; }
 
 // Rays with a common origin, such as those of a block of pixels. Neighbours should be adjacent, in squares of four, of
 // sixteen … (Morton order). Directions as in Ray, by axis.
@@ -30,7 +34,7 @@ inline Ray ray_of(const RayPacket& rays, std::uint32_t i) {
 }
 
 // Rays with individual origins and ends. Fast for coherent rays, such as those to one light or along one direction,
-// with neighbours adjacent as in RayPacket.
+// with neighbours adjacent as in RayPacket. They name no triangles.
 struct SegmentPacket {
   std::uint32_t count;  // up to kPacketMax
   alignas(64) float origin[3][kPacketMax], direction[3][kPacketMax], t_max[kPacketMax];

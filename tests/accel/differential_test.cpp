@@ -13,11 +13,38 @@ namespace {
 bool accept_some(const void*, std::uint32_t triangle, float u, float v) { return triangle % 3 != 0 && u <= v + 0.25f; }
 constexpr HitFilter kSome = {accept_some, nullptr};
 
-// Rays that share an origin and t_max, and the answers of brute force.
+// A filter, if any, that rejects two triangles, too.
+struct Without {
+  const HitFilter* base;
+  std::uint32_t first, second;
+};
+bool accept_without(const void* context, std::uint32_t triangle, float u, float v) {
+  const Without& without = *static_cast<const Without*>(context);
+  return triangle != without.first && triangle != without.second &&
+         (!without.base || without.base->accept(nullptr, triangle, u, v));
+}
+
+// Rays that share an origin and t_max, and the answers of brute force: closest hits, and whether a ray that joins the
+// first triangle it hits and the next one is blocked all the same, by any and by some.
 struct Group {
   std::vector<Ray> rays;
   std::vector<Hit> hits, filtered;
+  std::vector<Ray> joining;
+  std::vector<bool> blocked, blocked_by_some;
 };
+
+void join_hits(const World& oracle, Ray ray, const Hit& hit, Group* group) {
+  const Without first = {nullptr, hit.triangle, kNoTriangle};
+  const HitFilter beyond_first = {accept_without, &first};
+  ray.from = hit.triangle, ray.to = closest(oracle, ray, nullptr, &beyond_first).triangle;
+  group->joining.push_back(ray);
+  for (const HitFilter* base : {static_cast<const HitFilter*>(nullptr), &kSome}) {
+    const Without both = {base, ray.from, ray.to};
+    const HitFilter beyond = {accept_without, &both};
+    (base ? group->blocked_by_some : group->blocked)
+        .push_back(closest(oracle, ray, nullptr, &beyond).triangle != kNoTriangle);
+  }
+}
 
 // Origins: far outside, inside, within the box of a triangle, at a vertex.
 Vec3 random_origin(Rng* rng, const Mesh& mesh, const Vec3& middle, float size) {
@@ -85,6 +112,7 @@ std::vector<Group> random_groups(Rng* rng, const Mesh& mesh, const World& oracle
     for (const Ray& ray : group.rays) {
       group.hits.push_back(closest(oracle, ray));
       group.filtered.push_back(closest(oracle, ray, nullptr, &kSome));
+      join_hits(oracle, ray, group.hits.back(), &group);
     }
   }
   return groups;
@@ -102,6 +130,9 @@ int wrong_in_group(const Variant& variant, const World& world, const Group& grou
     bool occluded_by_some = world.info->occluded(world.accel, ray, &kSome, nullptr);
     wrong += !same_hit(hits[i], hit) || !same_hit(filtered[i], other) || occluded != (hit.triangle != kNoTriangle) ||
              occluded_by_some != (other.triangle != kNoTriangle);
+    const std::size_t at = static_cast<std::size_t>(i);
+    wrong += world.info->occluded(world.accel, group.joining[at], nullptr, nullptr) != group.blocked[at] ||
+             world.info->occluded(world.accel, group.joining[at], &kSome, nullptr) != group.blocked_by_some[at];
   }
   return wrong;
 }
@@ -110,7 +141,8 @@ int wrong_in_group(const Variant& variant, const World& world, const Group& grou
 
 // Goal: the same (t, u, v, id) from every structure, instruction set and packet size, and the same occlusion.
 // Method: differential against brute force on meshes of every kind; rays from inside boxes, from outside and afar, at
-// corners and edges, along axes, with t_max just at their hits, with and without a filter.
+// corners and edges, along axes, with t_max just at their hits, with and without a filter; and rays that join two of
+// the triangles they hit, against closest hits of a filter without these.
 TEST_CASE("differential_every_variant_answers_as_brute_force") {
   for (const Mesh& mesh : generated_meshes()) {
     auto oracle = make_world(mesh, &kBruteAccel);
