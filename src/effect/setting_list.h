@@ -178,7 +178,8 @@ inline constexpr SettingRow kSettingList[] = {
      ""},
     {"virtual-lights",
      "virtual lights of instant radiosity",
-     "surfaces seen directly trace rays to a sixteenth of them, those in mirrors and behind glass to groups of all",
+     "a surface seen directly takes a sixteenth of them at each pixel, one in a mirror or behind glass takes all; "
+     "--light-tolerance bounds the shadow rays",
      nullptr,
      count_field<&Quality::virtual_lights>(Quantity::virtual_lights),
      2,
@@ -244,7 +245,8 @@ inline constexpr SettingRow kSettingList[] = {
      ""},
     {"light-tolerance",
      "of many lights, share of a surface's light that needs no shadow rays",
-     "the strongest lights are tested, and a ray to one of some virtual lights stands for them; 0: all",
+     "the strongest lights are tested, and a ray to one of some virtual lights stands for them: a pixel traces at "
+     "most 1 + 1/(16 × tolerance) rays to these; 0: all",
      "light tolerance",
      real_field<&Quality::light_tolerance>(Quantity::light_tolerance),
      4,

@@ -10,6 +10,7 @@ namespace pocketray {
 // A point of a diffuse surface that sends intensity × cosine to the side of its normal.
 struct VirtualLight {
   Vec3 position, normal, intensity;
+  std::uint32_t triangle;
 };
 constexpr std::uint32_t kVirtualLightRoom = kVirtualLightMax + kVirtualLightMax / 4;  // paths differ in length
 struct VirtualLights {

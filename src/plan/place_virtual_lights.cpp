@@ -165,7 +165,7 @@ void follow(const FrameData& frame, Particle particle, Walk* walk, VirtualLights
     particle.flux = particle.flux * window_at(bounce == 0 ? particle.range : 0, hit.t);
     if (!is_zero(s.diffuse) && lights->count < kVirtualLightRoom) {
       Vec3d intensity = particle.flux * to_double(s.diffuse) * (1 / kPi);
-      lights->light[lights->count++] = {safe_origin(s, 1), s.geometric, to_float(intensity)};
+      lights->light[lights->count++] = {safe_origin(s, 1), s.geometric, to_float(intensity), hit.triangle};
     }
     if (!scatter(frame, s, walk, &particle)) return;
   }

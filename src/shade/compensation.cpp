@@ -108,8 +108,9 @@ struct CompensationRays {
     Choice choice = {spread_number(place, kStepOfVirtualLights)};
     for (std::uint32_t i = place; i < lights.count; i += kPatternPixels) {
       Candidate candidate = {{0, 0, 0}, {}, kNone, static_cast<std::uint16_t>(i)};
-      if (arrives(lights.light[i], lights.geometry_max, s, origin, &candidate.irradiance, &candidate.ray))
-        choice.add(candidate);
+      if (!arrives(lights.light[i], lights.geometry_max, s, &candidate.irradiance)) continue;
+      candidate.ray = ray_to(lights.light[i], s, origin);
+      choice.add(candidate);
     }
     return arriving(choice, static_cast<float>(kPatternPixels), &path->virtual_light);
   }

@@ -14,13 +14,15 @@ struct DistantSource {
   const EnvironmentLights& lights;
   std::uint32_t count;
 
-  bool arrives(std::uint32_t index, const Surface& s, const Vec3& origin, Vec3* light, Ray* ray) const {
+  bool arrives(std::uint32_t index, const Surface& s, Vec3* light) const {
     const EnvironmentLight& from = lights.light[index];
     const float cosine = dot(s.normal, from.direction);
     if (!(cosine > 0 && dot(s.geometric, from.direction) > 0)) return false;
     *light = from.irradiance * cosine;
-    *ray = {origin, from.direction, __builtin_inff()};
     return true;
+  }
+  Ray ray(std::uint32_t index, const Surface& s, const Vec3& origin) const {
+    return {origin, lights.light[index].direction, __builtin_inff(), s.hit.triangle};
   }
 };
 
@@ -55,6 +57,6 @@ Vec3 irradiance(const FrameData& frame, const Vec3&, const Vec3& normal, const I
 }  // namespace
 
 const InterleavedSource kEnvironmentSource = {
-    Effect::environment_shadow, true, count, place, list_rays, gather, irradiance};
+    Effect::environment_shadow, true, true, count, place, list_rays, gather, irradiance};
 
 }  // namespace pocketray

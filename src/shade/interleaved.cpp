@@ -30,6 +30,7 @@ constexpr std::uint32_t kRegionSide = kTakenBefore + kTileSide + kTakenAfter;
 constexpr std::uint32_t kRegionPixels = kRegionSide * kRegionSide;
 enum class Link : std::uint8_t { unknown, different, same };
 struct Region {
+  bool is_one_surface;  // all of its pixels show it, and so all that wanted pixels take light from
   InterleavedPixel pixel[kRegionPixels];
   Link right[kRegionPixels], below[kRegionPixels];  // whether it shows the same surface as the next pixel there
   InterleavedLight column[kRegionPixels];           // of a source, sums along columns; none yet: of no pixel
@@ -41,27 +42,48 @@ bool is_hit(const InterleavedPixel& pixel) { return is_known(pixel) && pixel.tri
 // Pixels to trace, in packets. Columns and rows count from the region's first.
 struct PixelList {
   std::uint32_t count = 0;
-  std::uint8_t column[kRegionPixels], row[kRegionPixels];
+  std::uint8_t column[kRegionPixels] = {}, row[kRegionPixels] = {};
 
-  void add(std::uint32_t c, std::uint32_t r) {
+  constexpr void add(std::uint32_t c, std::uint32_t r) {
     column[count] = static_cast<std::uint8_t>(c), row[count++] = static_cast<std::uint8_t>(r);
   }
+};
+struct PixelLists {
+  PixelList wanted;  // in Morton order
+  PixelList others;  // in the picture, about wanted ones
 };
 
 struct SharedTile {
   std::uint32_t column, row;  // of its first pixel in the picture
-  PixelList wanted;           // in Morton order
-  PixelList others;           // in the picture, about wanted ones
+  const PixelLists* lists;
 };
 
+constexpr PixelLists all_pixels() {
+  PixelLists lists;
+  for (std::uint32_t m = 0; m < kPacketMax; ++m)
+    lists.wanted.add(morton_column(m) + kTakenBefore, morton_row(m) + kTakenBefore);
+  for (std::uint32_t row = 0; row < kRegionSide; ++row)
+    for (std::uint32_t column = 0; column < kRegionSide; ++column)
+      if (column - kTakenBefore >= kTileSide || row - kTakenBefore >= kTileSide) lists.others.add(column, row);
+  return lists;
+}
+constexpr PixelLists kAllPixels = all_pixels();  // of a tile that is wanted whole, within the picture
+
 // The tile's pixels in the mask, and those about them.
-void list_pixels(const Settings& settings, std::uint64_t mask, SharedTile* tile) {
+void list_pixels(const Settings& settings, std::uint64_t mask, PixelLists* room, SharedTile* tile) {
+  if (mask == ~std::uint64_t(0) && tile->column >= kTakenBefore && tile->row >= kTakenBefore &&
+      tile->column + kTileSide + kTakenAfter <= settings.width &&
+      tile->row + kTileSide + kTakenAfter <= settings.height) {
+    tile->lists = &kAllPixels;
+    return;
+  }
+  tile->lists = room;
   bool is_wanted[kRegionPixels] = {}, is_taken[kRegionPixels] = {};
-  tile->wanted.count = tile->others.count = 0;
+  room->wanted.count = room->others.count = 0;
   for (std::uint32_t m = 0; m < kPacketMax; ++m) {
     const std::uint32_t column = morton_column(m), row = morton_row(m);
     if (!(mask >> m & 1) || tile->column + column >= settings.width || tile->row + row >= settings.height) continue;
-    tile->wanted.add(column + kTakenBefore, row + kTakenBefore);
+    room->wanted.add(column + kTakenBefore, row + kTakenBefore);
     is_wanted[(row + kTakenBefore) * kRegionSide + column + kTakenBefore] = true;
     for (std::uint32_t y = row; y < row + kPatternSide; ++y)
       std::fill_n(&is_taken[y * kRegionSide + column], kPatternSide, true);
@@ -69,7 +91,7 @@ void list_pixels(const Settings& settings, std::uint64_t mask, SharedTile* tile)
   for (std::uint32_t i = 0; i < kRegionPixels; ++i) {
     const std::uint32_t column = i % kRegionSide, row = i / kRegionSide;
     const std::uint32_t x = tile->column + column - kTakenBefore, y = tile->row + row - kTakenBefore;  // or beyond 2^31
-    if (is_taken[i] && !is_wanted[i] && x < settings.width && y < settings.height) tile->others.add(column, row);
+    if (is_taken[i] && !is_wanted[i] && x < settings.width && y < settings.height) room->others.add(column, row);
   }
 }
 
@@ -149,15 +171,21 @@ void gather(Tracer* tracer, const SharedTile& tile, std::uint32_t sample, const 
 }
 
 void link_neighbours(Region* region) {
+  bool is_one_surface = true;
   auto link = [&](std::uint32_t a, std::uint32_t b, Link* l) {
     const InterleavedPixel &p = region->pixel[a], &q = region->pixel[b];
     if (*l == Link::unknown && is_known(q)) *l = is_hit(q) && shows_same(p, q) ? Link::same : Link::different;
+    is_one_surface &= *l == Link::same;
   };
   for (std::uint32_t k = 0; k < kRegionPixels; ++k) {
-    if (!is_hit(region->pixel[k])) continue;
+    if (!is_hit(region->pixel[k])) {
+      is_one_surface = false;
+      continue;
+    }
     if (k % kRegionSide + 1 < kRegionSide) link(k, k + 1, &region->right[k]);
     if (k + kRegionSide < kRegionPixels) link(k, k + kRegionSide, &region->below[k]);
   }
+  region->is_one_surface = is_one_surface;
 }
 
 // Calls visit(k) for a pixel, and those within reach along a row or column to which all neighbours show the same.
@@ -174,10 +202,44 @@ void add(const InterleavedLight& light, InterleavedLight* sum) {
 
 constexpr InterleavedLight kNoLight = {{0, 0, 0}, {0, 0, 0}, 0};
 
+// The sum over all that along() visits if no link keeps it from any, in its order. light(k): of a pixel.
+template <class Light>
+InterleavedLight sum_of_all(std::uint32_t step, std::uint32_t own, bool with_open, Light light) {
+  InterleavedLight sum = light(own);
+  auto take = [&](const InterleavedLight& other) {
+    sum.lit += other.lit, sum.pixel_count += other.pixel_count;
+    if (with_open) sum.open += other.open;
+  };
+  for (std::uint32_t i = 1; i <= kTakenBefore; ++i) take(light(own - i * step));
+  for (std::uint32_t i = 1; i <= kTakenAfter; ++i) take(light(own + i * step));
+  return sum;
+}
+
+// The same light where the whole region shows one surface.
+void add_light_of_one_surface(const FrameData& frame, const PixelList& wanted, int source, Region* region,
+                              FirstHits* first) {
+  CHECK(region->is_one_surface);
+  const InterleavedSource& info = *kInterleavedSources[source];
+  for (std::uint32_t k = kTakenBefore * kRegionSide; k < (kTakenBefore + kTileSide) * kRegionSide; ++k)
+    region->column[k] =
+        sum_of_all(kRegionSide, k, info.reads_open, [&](std::uint32_t at) { return region->pixel[at].light[source]; });
+  for (std::uint32_t i = 0; i < wanted.count; ++i) {
+    Surface& s = first->shadows.surface[i];
+    if (is_zero(s.diffuse)) continue;
+    const InterleavedLight sum = sum_of_all(1, wanted.row[i] * kRegionSide + wanted.column[i], info.reads_open,
+                                            [&](std::uint32_t at) { return region->column[at]; });
+    s.glow += s.diffuse * info.irradiance(frame, s.point, s.normal, sum, false);
+  }
+}
+
 // Adds what the wanted pixels take from those about them to the light that their surfaces emit.
 void add_shared_light(const FrameData& frame, const PixelList& wanted, Region* region, FirstHits* first) {
   for (int source = 0; source < kInterleavedSourceCount; ++source) {
     if (!has(frame.mask, kInterleavedSources[source]->effect)) continue;
+    if (region->is_one_surface) {
+      add_light_of_one_surface(frame, wanted, source, region, first);
+      continue;
+    }
     std::fill_n(region->column, kRegionPixels, kNoLight);
     for (std::uint32_t i = 0; i < wanted.count; ++i) {
       Surface& s = first->shadows.surface[i];
@@ -211,26 +273,27 @@ void trace_sample(Tracer* tracer, const SharedTile& tile, std::uint32_t sample, 
   const FrameData& frame = *tracer->frame;
   const std::uint32_t sample_count = frame.settings.samples_per_pixel;
   const Vec2 offset = rook_point(sample, sample_count);
+  const PixelList& wanted = tile.lists->wanted;
   FirstHits first;
   PixelList lacking;
-  for (std::uint32_t i = 0; i < tile.others.count; ++i)
-    if (!is_known(region->pixel[tile.others.row[i] * kRegionSide + tile.others.column[i]]))
-      lacking.add(tile.others.column[i], tile.others.row[i]);
+  for (std::uint32_t i = 0; i < tile.lists->others.count; ++i)
+    if (!is_known(region->pixel[tile.lists->others.row[i] * kRegionSide + tile.lists->others.column[i]]))
+      lacking.add(tile.lists->others.column[i], tile.lists->others.row[i]);
   for (std::uint32_t begin = 0; begin < lacking.count; begin += kPacketMax) {
     const std::uint32_t count = std::min(lacking.count - begin, kPacketMax);
     find_first_hits(tracer, tile, lacking, begin, count, offset, false, &first);
     gather(tracer, tile, sample, lacking, begin, count, first, region);
   }
-  find_first_hits(tracer, tile, tile.wanted, 0, tile.wanted.count, offset, true, &first);
-  gather(tracer, tile, sample, tile.wanted, 0, tile.wanted.count, first, region);
+  find_first_hits(tracer, tile, wanted, 0, wanted.count, offset, true, &first);
+  gather(tracer, tile, sample, wanted, 0, wanted.count, first, region);
   link_neighbours(region);
-  add_shared_light(frame, tile.wanted, region, &first);
+  add_shared_light(frame, wanted, region, &first);
   tracer->tile_shadows = first.knows_shadows ? &first.shadows : nullptr;
-  for (std::uint32_t i = 0; i < tile.wanted.count; ++i) {
+  for (std::uint32_t i = 0; i < wanted.count; ++i) {
     Surface* s = &first.shadows.surface[i];
     const bool hit = first.hit[i].triangle != kNoTriangle;
-    const std::uint32_t column = tile.column + tile.wanted.column[i] - kTakenBefore,
-                        row = tile.row + tile.wanted.row[i] - kTakenBefore;
+    const std::uint32_t column = tile.column + wanted.column[i] - kTakenBefore,
+                        row = tile.row + wanted.row[i] - kTakenBefore;
     tracer->tile_pixel = i;
     tracer->first_surface = hit ? s : nullptr;
     observe_pixel(tracer, column, row);
@@ -286,6 +349,7 @@ void keep(Tracer* tracer, const SharedTile& tile, Region* region) {
 void trace_tile_row(Tracer* tracer, const AlignedTiles& tiles, std::uint32_t r, const PixelRows& image) {
   const FrameData& frame = *tracer->frame;
   Region region;
+  PixelLists room;
   SharedTile tile;
   for (std::uint32_t sample = 0; sample < frame.settings.samples_per_pixel; ++sample) {
     for (InterleavedPixel& pixel : region.pixel) pixel.row = kNone;
@@ -294,8 +358,8 @@ void trace_tile_row(Tracer* tracer, const AlignedTiles& tiles, std::uint32_t r, 
       tile.column = tiles.column + c * kTileSide, tile.row = tiles.row + r * kTileSide;
       if (c > 0) move_on(&region);
       if (!tiles.mask[r][c]) continue;
-      list_pixels(frame.settings, tiles.mask[r][c], &tile);
-      if (tile.wanted.count == 0) continue;
+      list_pixels(frame.settings, tiles.mask[r][c], &room, &tile);
+      if (tile.lists->wanted.count == 0) continue;
       if (frame.settings.samples_per_pixel > 1) {
         trace_sample(tracer, tile, sample, image, &region);
         continue;

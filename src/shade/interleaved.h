@@ -59,6 +59,7 @@ struct SourceRay {
 struct InterleavedSource {
   Effect effect;
   bool is_distant;
+  bool reads_open;  // irradiance() reads InterleavedLight::open even where many pixels show the surface
   std::uint32_t (*count)(const FrameData& frame);
   Vec3 (*place)(const FrameData& frame, std::uint32_t index);  // a point, or the direction towards a distant one
   // Lists the shadow rays of a first hit, at most kSourcesOfPixelMax, and returns their number.

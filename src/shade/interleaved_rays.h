@@ -10,7 +10,6 @@ namespace pocketray {
 struct SentLight {
   Vec3 light;
   float most;  // its brightest channel
-  Ray ray;
   std::uint32_t source;
 };
 
@@ -21,6 +20,7 @@ struct SentLights {
   float least = 0;        // fainter ones are not traced
   float enough = 0;       // of the light of a group
   Vec3 open = {0, 0, 0};  // the sum of their light
+  Vec3 origin;            // of shadow rays
   SentLight sent[capacity];
   SentLights() {}  // leaves them as they are
 };
@@ -31,18 +31,19 @@ using PixelLights = SentLights<kSourcesOfPixelMax>;
 //   kFaint: of a surface's sources, those that give less than this share of their mean get no ray, and as much of their
 //       light arrives as of the others'
 //   tolerance: of the rest, neighbours form groups, see each_group()
-//   arrives(index, surface, origin, &light, &ray): false if the surface is turned away from it
+//   arrives(index, surface, &light): false if the surface is turned away from it
+//   ray(index, surface, origin): the shadow ray to it from the surface's safe origin
 // Finds the sources `first`, `first` + `step`, …
 template <std::uint32_t step, class Source, std::uint32_t capacity>
 void find_sources(const Source& source, const Surface& surface, std::uint32_t first, SentLights<capacity>* rays) {
   CHECK_LE(source.count, capacity * step);
   rays->count = 0, rays->least = rays->enough = 0, rays->open = {0, 0, 0};
   if (is_zero(surface.diffuse)) return;
-  const Vec3 origin = safe_origin(surface, 1);
+  rays->origin = safe_origin(surface, 1);
   float all = 0;
   for (std::uint32_t index = first; index < source.count; index += step) {
     SentLight* r = &rays->sent[rays->count];
-    if (!source.arrives(index, surface, origin, &r->light, &r->ray)) continue;
+    if (!source.arrives(index, surface, &r->light)) continue;
     r->most = max_component(r->light), r->source = index;
     all += r->most, rays->open += r->light;
     ++rays->count;
@@ -53,7 +54,7 @@ void find_sources(const Source& source, const Surface& surface, std::uint32_t fi
 
 // Sources that share a ray: the brightest one's.
 struct RayGroup {
-  const SentLight* ray;
+  const SentLight* sent;
   Vec3 light;  // of all of them
   float most;
 };
@@ -83,7 +84,7 @@ Vec3 each_group(const SentLights<capacity>& rays, Visit visit) {
         faint += r->light;
         continue;
       }
-      if (r->most > group.ray->most) group.ray = r;
+      if (r->most > group.sent->most) group.sent = r;
       group.light += r->light, group.most += r->most;
       if (!(group.most < rays.enough)) {
         ++r;
@@ -96,13 +97,14 @@ Vec3 each_group(const SentLights<capacity>& rays, Visit visit) {
 }
 
 // The light that arrives, `is_blocked(ray)` telling what does not.
-template <std::uint32_t capacity, class IsBlocked>
-[[gnu::always_inline]] inline Vec3 arriving_light(const SentLights<capacity>& found, IsBlocked is_blocked) {
+template <class Source, std::uint32_t capacity, class IsBlocked>
+[[gnu::always_inline]] inline Vec3 arriving_light(const Source& source, const Surface& surface,
+                                                  const SentLights<capacity>& found, IsBlocked is_blocked) {
   Vec3 lit = {0, 0, 0};
   float traced = 0, arrived = 0;
   const Vec3 faint = each_group(found, [&](const RayGroup& group) {
     traced += group.most;
-    if (is_blocked(group.ray->ray)) return;
+    if (is_blocked(source.ray(group.sent->source, surface, found.origin))) return;
     lit += group.light, arrived += group.most;
   });
   if (arrived == traced) return found.open;
@@ -123,7 +125,7 @@ void gather_interleaved(const FrameData& frame, const InterleavedPoints& points,
     light[i] = InterleavedLight();
     light[i].open = light[i].lit = found.open;
     if (!casts_shadows) continue;
-    light[i].lit = arriving_light(found, [&](const Ray& ray) {
+    light[i].lit = arriving_light(source, *points.surface[i], found, [&](const Ray& ray) {
       ++*rays;
       return frame.first_rays->occluded(frame.accel, ray, filter, stats);
     });
@@ -135,7 +137,9 @@ std::uint32_t list_source_rays(const Source& source, const Surface& surface, std
   PixelLights found;
   find_sources<kPatternPixels>(source, surface, place, &found);
   std::uint32_t count = 0;
-  each_group(found, [&](const RayGroup& group) { rays[count++] = {group.ray->source, group.ray->ray}; });
+  each_group(found, [&](const RayGroup& group) {
+    rays[count++] = {group.sent->source, source.ray(group.sent->source, surface, found.origin)};
+  });
   return count;
 }
 

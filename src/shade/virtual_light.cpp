@@ -17,15 +17,19 @@ struct VirtualSource {
   std::uint32_t count;
   float tolerance;
 
-  [[gnu::always_inline]] bool arrives(std::uint32_t index, const Surface& s, const Vec3& origin, Vec3* light,
-                                      Ray* ray) const {
-    return pocketray::arrives(lights.light[index], geometry_max, s, origin, light, ray);
+  [[gnu::always_inline]] bool arrives(std::uint32_t index, const Surface& s, Vec3* light) const {
+    return pocketray::arrives(lights.light[index], geometry_max, s, light);
+  }
+  Ray ray(std::uint32_t index, const Surface& s, const Vec3& origin) const {
+    return ray_to(lights.light[index], s, origin);
   }
 };
 
+// A pixel has a sixteenth of the lights, so that a group may have sixteen times the tolerance of their light: one ray
+// or two by default. See tests/indirect/FIGURES.md.
 VirtualSource source_of(const FrameData& frame) {
   const VirtualLights& lights = *virtual_lights_of(frame.indirect);
-  return {lights, lights.first_geometry_max, lights.count, frame.settings.light_tolerance};
+  return {lights, lights.first_geometry_max, lights.count, frame.settings.light_tolerance * kPatternPixels};
 }
 
 std::uint32_t count(const FrameData& frame) { return virtual_lights_of(frame.indirect)->count; }
@@ -58,10 +62,6 @@ Vec3 irradiance(const FrameData& frame, const Vec3& point, const Vec3& normal, c
   return min(result, Vec3{lights.irradiance_max, lights.irradiance_max, lights.irradiance_max}) * (1 / kPiF);
 }
 
-// Where no other pixels share the light, groups of half the tolerance. Measured in cornell's mirror, 64 lights: ꟻLIP
-// against all rays is .028, with the whole tolerance .040, without shadows .096; see tests/indirect/FIGURES.md.
-constexpr float kLaterTolerance = 0.5f;
-
 }  // namespace
 
 void add_later_virtual_light(Tracer* tracer, const Vec3& weight, Surface* surface) {
@@ -74,11 +74,14 @@ void add_later_virtual_light(Tracer* tracer, const Vec3& weight, Surface* surfac
     return;
   }
   SentLights<kVirtualLightRoom> found;
-  const float tolerance = kLaterTolerance * frame.settings.light_tolerance / max_component(weight);
-  find_sources<1>(VirtualSource{lights, lights.geometry_max, lights.count, tolerance}, s, 0, &found);
+  // Measured in cornell's mirror, 64 lights: ꟻLIP against all rays is .040, with half the tolerance .028, without
+  // shadows .096.
+  const float tolerance = frame.settings.light_tolerance / max_component(weight);
+  const VirtualSource source = {lights, lights.geometry_max, lights.count, tolerance};
+  find_sources<1>(source, s, 0, &found);
   const ShadowContext context = {&frame, kNone};
   const HitFilter opaque = {frame.accept_opaque, &context, frame.filters_read_point};
-  const Vec3 lit = arriving_light(found, [&](const Ray& ray) {
+  const Vec3 lit = arriving_light(source, s, found, [&](const Ray& ray) {
     ++tracer->rays[static_cast<int>(RayKind::shadow)];
     return frame.accel_info->occluded(frame.accel, ray, frame.filter_every_shadow ? &opaque : nullptr, &tracer->stats);
   });
@@ -86,6 +89,6 @@ void add_later_virtual_light(Tracer* tracer, const Vec3& weight, Surface* surfac
 }
 
 const InterleavedSource kVirtualLightSource = {
-    Effect::instant_radiosity, false, count, place, list_rays, gather, irradiance};
+    Effect::instant_radiosity, false, false, count, place, list_rays, gather, irradiance};
 
 }  // namespace pocketray

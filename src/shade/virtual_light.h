@@ -7,14 +7,16 @@ namespace pocketray {
 // A shadow ray ends a little before its light, which lies on a surface: by a fraction of its length.
 constexpr float kVirtualRayEnd = 1 - 0x1p-10f;
 
-// What a virtual light gives a surface if nothing is in the way of the ray; false if that is nothing.
+// What a virtual light gives a surface if nothing is in the way; false if that is nothing.
 [[gnu::always_inline]] inline bool arrives(const VirtualLight& from, float geometry_max, const Surface& s,
-                                           const Vec3& origin, Vec3* light, Ray* ray) {
+                                           Vec3* light) {
   Vec3 to_light = {0, 0, 0};
   *light = virtual_irradiance(from, geometry_max, s.point, s.normal, &to_light);
-  if (!(max_component(*light) > 0) || is_below(s, to_light)) return false;
-  *ray = {origin, from.position - origin, kVirtualRayEnd};
-  return true;
+  return max_component(*light) > 0 && !is_below(s, to_light);
+}
+// The shadow ray to it from the surface's safe origin.
+inline Ray ray_to(const VirtualLight& light, const Surface& s, const Vec3& origin) {
+  return {origin, light.position - origin, kVirtualRayEnd, s.hit.triangle, light.triangle};
 }
 
 // Adds what the virtual lights give a surface that is no first hit. The rays to them are the tracer's, seen by its

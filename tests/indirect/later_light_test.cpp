@@ -67,11 +67,12 @@ Surface surface_along(const FrameData& frame, const Ray& ray) {
 Vec3 visible_light(const FrameData& frame, const Surface& s) {
   const VirtualLights& lights = *virtual_lights_of(frame.indirect);
   Vec3 sum = {0, 0, 0}, light;
-  Ray ray;
+  const Vec3 origin = safe_origin(s, 1);
   TraceStats stats;
   for (std::uint32_t i = 0; i < lights.count; ++i)
-    if (arrives(lights.light[i], lights.geometry_max, s, safe_origin(s, 1), &light, &ray) &&
-        !frame.accel_info->occluded(frame.accel, ray, nullptr, &stats))
+    if (arrives(lights.light[i], lights.geometry_max, s, &light) &&
+        !frame.accel_info->occluded(frame.accel, {origin, lights.light[i].position - origin, kVirtualRayEnd}, nullptr,
+                                    &stats))
       sum += light;
   return s.diffuse * (sum * (1 / kPiF));
 }
@@ -122,7 +123,7 @@ TEST_CASE("later_virtual_lights_cast_shadows") {
     }
     CHECK(right < 0.8 * open);
     CHECK(sum == doctest::Approx(right).epsilon(0.01));
-    CHECK(error < (tolerance > 0 ? 0.08 : 0.03) * right);
+    CHECK(error < (tolerance > 0 ? 0.11 : 0.03) * right);
   }
 }
 
@@ -140,12 +141,12 @@ TEST_CASE("later_virtual_lights_take_fewer_rays_where_they_matter_less") {
     const float weights[] = {1, 0.25f, 0x1p-6f};
     for (int k = 0; k < 3; ++k) {
       const std::uint64_t rays = later_light(frame, s, weights[k]).rays;
-      CHECK(rays <= static_cast<std::uint64_t>(32 * weights[k]) + 1);
+      CHECK(rays <= static_cast<std::uint64_t>(16 * weights[k]) + 1);
       sum[k] += rays;
     }
   }
-  CHECK(sum[0] > 16 * kPoints);
-  CHECK(sum[1] > 4 * kPoints);
+  CHECK(sum[0] > 10 * kPoints);
+  CHECK(sum[1] > 3 * kPoints);
   CHECK(sum[2] > kPoints / 2);
 }
 

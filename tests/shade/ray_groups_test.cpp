@@ -25,10 +25,12 @@ struct RandomSources {
   float tolerance;
   const float* brightness;
 
-  bool arrives(std::uint32_t index, const Surface&, const Vec3& origin, Vec3* light, Ray* ray) const {
+  bool arrives(std::uint32_t index, const Surface&, Vec3* light) const {
     *light = Vec3{1, 0.5f, 0.25f} * brightness[index];
-    *ray = {origin, {static_cast<float>(index), 1, 0}, 1};
     return *light != Vec3{0, 0, 0};
+  }
+  Ray ray(std::uint32_t index, const Surface&, const Vec3& origin) const {
+    return {origin, {static_cast<float>(index), 1, 0}, 1};
   }
 };
 
