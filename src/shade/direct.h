@@ -169,6 +169,49 @@ inline const LinearForm* linear_form(const FrameData& frame, const LitSurface& t
   return kBrdfList[to.material.brdf]->linear;
 }
 
+// Of a lamp's points, weighted by their share of the highlight and of the matte light.
+struct LobePoints {
+  Vec3 seen_gloss = {0, 0, 0}, seen_rest = {0, 0, 0}, common = {1, 1, 1};
+  float all_gloss = 0, all = 0, highest = 0;
+  bool any = false, alike = true;  // whether all points are as visible as the first
+};
+
+template <EffectMask mask>
+[[gnu::always_inline]] inline LobePoints sum_lobe_points(Tracer* tracer, const LitSurface& to, const LightRun& run,
+                                                         std::uint32_t first, const PolygonView& view,
+                                                         const LinearForm& form, const LobeParts& parts,
+                                                         bool all_seen) {
+  const FrameData& frame = *tracer->frame;
+  const Surface& s = to.surface;
+  const std::uint32_t count = frame.settings.points_per_area_light;
+  const LightPolygon& polygon = run.polygons[(first - run.begin) / count];
+  LobePoints p;
+  for (std::uint32_t i = first; i < first + count; ++i) {
+    LightSample sample;
+    if (!lights_up(frame, s, run, frame.lights[i], &sample)) continue;
+    const Vec3& to_light = sample.direction;
+    const float arriving = max_component(sample.irradiance), cosine = dot(s.normal, to_light);
+    const float share = arriving * cosine;
+    p.all += share;
+    if (view.highest > 0) p.highest = std::max(p.highest, dot(s.normal, sample.to_light) * polygon.scale);
+    Vec3 visibility = {1, 1, 1};
+    if (!all_seen) {
+      if constexpr (has(mask, Effect::shadow))
+        visibility = shadow<mask>(tracer, s, run, i, &sample, to.at_first_hit);
+      else if (is_below(s, to_light))
+        visibility = {0, 0, 0};
+      const Vec3 local = {dot(parts.x, to_light), dot(parts.y, to_light), dot(parts.z, to_light)};
+      const float square = dot(local, local), fourth = square * square;
+      const float weight = arriving / (form.power > 1 ? fourth * fourth * fourth : fourth);
+      p.all_gloss += weight, p.seen_gloss += visibility * weight;
+    }
+    p.seen_rest += (form.rest ? form.rest(parts, cosine) * visibility : visibility) * share;
+    if (!p.any) p.common = visibility;
+    p.any = true, p.alike = p.alike && visibility == p.common;
+  }
+  return p;
+}
+
 // Adds the light of a lamp at a glossy surface: the closed forms of the sharp part and of the rest, each times the
 // share that arrives, of points weighted by what they add to it. For the sharp part, by a distribution with long tails:
 // where the lobe hardly sees any of the points, the nearest counts. False: the lobe cannot be divided.
@@ -209,40 +252,15 @@ template <EffectMask mask>
     *sum += gloss + matte;
     return true;
   }
-  Vec3 seen_gloss = {0, 0, 0}, seen_rest = {0, 0, 0}, common = {1, 1, 1};
-  float all_gloss = 0, all = 0, highest = 0;
-  bool any = false, alike = true;  // whether all points are as visible as the first
-  for (std::uint32_t i = first; i < first + count; ++i) {
-    LightSample sample;
-    if (!lights_up(frame, s, run, frame.lights[i], &sample)) continue;
-    const Vec3& to_light = sample.direction;
-    const float arriving = max_component(sample.irradiance), cosine = dot(s.normal, to_light);
-    const float share = arriving * cosine;
-    all += share;
-    if (view.highest > 0) highest = std::max(highest, dot(s.normal, sample.to_light) * polygon.scale);
-    Vec3 visibility = {1, 1, 1};
-    if (!all_seen) {
-      if constexpr (kShadow)
-        visibility = shadow<mask>(tracer, s, run, i, &sample, to.at_first_hit);
-      else if (is_below(s, to_light))
-        visibility = {0, 0, 0};
-      const Vec3 local = {dot(parts.x, to_light), dot(parts.y, to_light), dot(parts.z, to_light)};
-      const float square = dot(local, local), fourth = square * square;
-      const float weight = arriving / (form.power > 1 ? fourth * fourth * fourth : fourth);
-      all_gloss += weight, seen_gloss += visibility * weight;
-    }
-    seen_rest += (form.rest ? form.rest(parts, cosine) * visibility : visibility) * share;
-    if (!any) common = visibility;
-    any = true, alike = alike && visibility == common;
-  }
-  if (!any || (!(all >= kShareMin) && (form.rest || !alike))) return true;
-  Vec3 light_out = gloss * common;
-  if (!alike) light_out = all_gloss >= kShareMin ? gloss * (seen_gloss * (1 / all_gloss)) : Vec3{0, 0, 0};
+  const LobePoints p = sum_lobe_points<mask>(tracer, to, run, first, view, form, parts, all_seen);
+  if (!p.any || (!(p.all >= kShareMin) && (form.rest || !p.alike))) return true;
+  Vec3 light_out = gloss * p.common;
+  if (!p.alike) light_out = p.all_gloss >= kShareMin ? gloss * (p.seen_gloss * (1 / p.all_gloss)) : Vec3{0, 0, 0};
   if (form.rest)
-    light_out += seen_rest * (1 / all) * irradiance;
+    light_out += p.seen_rest * (1 / p.all) * irradiance;
   else
-    light_out += matte * (alike ? common : seen_rest * (1 / all));
-  *sum += view.highest > 3 * highest ? light_out * (3 * highest / view.highest) : light_out;
+    light_out += matte * (p.alike ? p.common : p.seen_rest * (1 / p.all));
+  *sum += view.highest > 3 * p.highest ? light_out * (3 * p.highest / view.highest) : light_out;
   return true;
 }
 
