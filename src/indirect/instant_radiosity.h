@@ -7,15 +7,20 @@
 
 namespace pocketray {
 
-// A point of a diffuse surface that sends intensity × cosine to the side of its normal.
+// A point of a diffuse surface that sends intensity × cosine to the side of its normal. Pixels at its place in the
+// pattern of shade/interleaved.h take it: by its walk and bounce, so that it stays there when others change.
 struct VirtualLight {
   Vec3 position, normal, intensity;
-  std::uint32_t triangle;
+  std::uint32_t triangle, place;
 };
 constexpr std::uint32_t kVirtualLightRoom = kVirtualLightMax + kVirtualLightMax / 4;  // paths differ in length
+constexpr std::uint32_t kVirtualLightPlaces = 16,
+                        kVirtualLightsOfPlaceMax = 2 * kVirtualLightRoom / kVirtualLightPlaces;
 struct VirtualLights {
   VirtualLight light[kVirtualLightRoom];
   std::uint32_t count = 0;
+  // The indices of those of a place lie from first_of_place[place] on, up to the next place's.
+  std::uint16_t of_place[kVirtualLightRoom], first_of_place[kVirtualLightPlaces + 1] = {};
   double lights_per_walk = 0, area = -1;  // of the scene, by measure_walks(); area −1: not measured yet
   // Bound of the geometry term, cos cos / distance²: without it, a light would be infinitely bright where it lies
   // [Keller97, sec. 4]. It takes away light near edges, less the more lights there are: HARDCASES row 41.

@@ -32,6 +32,11 @@ constexpr double kPrimes[kNumbersPerBounce * (kBounceMax + 1)] = {
 // what its rays meet is not compensated; see tests/indirect/FIGURES.md.
 constexpr double kBound = 0.25, kCompensatedBound = 0.0625;
 
+// Of a walk's bounce, in the pattern: walks that follow each other lie in its four quarters in turn, and so do bounces.
+std::uint32_t place_in_pattern(std::uint32_t walk, std::uint32_t bounce) {
+  return (4 * walk + walk / 4 + 5 * bounce) % kVirtualLightPlaces;
+}
+
 struct Walk {
   std::uint32_t index, used = 0;
   double next() {
@@ -165,7 +170,8 @@ void follow(const FrameData& frame, Particle particle, Walk* walk, VirtualLights
     particle.flux = particle.flux * window_at(bounce == 0 ? particle.range : 0, hit.t);
     if (!is_zero(s.diffuse) && lights->count < kVirtualLightRoom) {
       Vec3d intensity = particle.flux * to_double(s.diffuse) * (1 / kPi);
-      lights->light[lights->count++] = {safe_origin(s, 1), s.geometric, to_float(intensity), hit.triangle};
+      lights->light[lights->count++] = {safe_origin(s, 1), s.geometric, to_float(intensity), hit.triangle,
+                                        place_in_pattern(walk->index, bounce)};
     }
     if (!scatter(frame, s, walk, &particle)) return;
   }
@@ -194,6 +200,23 @@ void sort_lights(const FrameData& frame, VirtualLights* lights) {
     for (; at > 0 && code[at - 1] > own; --at) code[at] = code[at - 1], lights->light[at] = lights->light[at - 1];
     code[at] = own, lights->light[at] = light;
   }
+}
+
+// Lists the lights of each place, in order. Of too many, the last ones move to the next place.
+void list_places(VirtualLights* lights) {
+  std::uint32_t counts[kVirtualLightPlaces] = {};
+  for (std::uint32_t i = 0; i < lights->count; ++i) {
+    std::uint32_t& place = lights->light[i].place;
+    while (counts[place] == kVirtualLightsOfPlaceMax) place = (place + 1) % kVirtualLightPlaces;
+    ++counts[place];
+  }
+  std::uint16_t next[kVirtualLightPlaces];
+  for (std::uint32_t p = 0; p < kVirtualLightPlaces; ++p) {
+    next[p] = lights->first_of_place[p];
+    lights->first_of_place[p + 1] = static_cast<std::uint16_t>(next[p] + counts[p]);
+  }
+  for (std::uint32_t i = 0; i < lights->count; ++i)
+    lights->of_place[next[lights->light[i].place]++] = static_cast<std::uint16_t>(i);
 }
 
 double surface_area(const FrameData& frame) {
@@ -297,6 +320,7 @@ void place_virtual_lights(FrameData* frame) {
   }
   lights->irradiance_max = sum * lights->geometry_max;
   sort_lights(*frame, lights);
+  list_places(lights);
 }
 
 }  // namespace pocketray

@@ -14,6 +14,7 @@ struct DistantSource {
   const EnvironmentLights& lights;
   std::uint32_t count;
 
+  SteppedIndices<kPatternPixels> of_place(std::uint32_t place) const { return {place, count}; }
   bool arrives(std::uint32_t index, const Surface& s, Vec3* light) const {
     const EnvironmentLight& from = lights.light[index];
     const float cosine = dot(s.normal, from.direction);

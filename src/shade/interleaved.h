@@ -49,7 +49,8 @@ constexpr std::uint32_t kept_pixel_count(const Settings& settings) { return kKep
 void keep_interleaved_pixels(Array<InterleavedPixel> pixels, Tracer* tracer);
 
 constexpr std::uint32_t kInterleavedSourceMax = std::max(kVirtualLightRoom, kEnvironmentLightMax);
-constexpr std::uint32_t kSourcesOfPixelMax = (kInterleavedSourceMax + kPatternPixels - 1) / kPatternPixels;
+constexpr std::uint32_t kSourcesOfPixelMax =
+    std::max(kVirtualLightsOfPlaceMax, (kEnvironmentLightMax + kPatternPixels - 1) / kPatternPixels);
 struct SourceRay {
   std::uint32_t source;
   Ray ray;

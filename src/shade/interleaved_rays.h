@@ -7,6 +7,15 @@
 namespace pocketray {
 
 // A source that reaches a surface if nothing is in the way.
+// The indices first, first + 16, … below a count, or all.
+template <std::uint32_t step>
+struct SteppedIndices {
+  std::uint32_t first, count;
+  SteppedIndices(std::uint32_t begin, std::uint32_t end)
+      : first(begin), count(begin < end ? (end - begin - 1) / step + 1 : 0) {}
+  std::uint32_t operator[](std::uint32_t k) const { return first + step * k; }
+};
+
 struct SentLight {
   Vec3 light;
   float most;  // its brightest channel
@@ -27,21 +36,22 @@ struct SentLights {
 using PixelLights = SentLights<kSourcesOfPixelMax>;
 
 // Source:
-//   count
 //   kFaint: of a surface's sources, those that give less than this share of their mean get no ray, and as much of their
 //       light arrives as of the others'
 //   tolerance: of the rest, neighbours form groups, see each_group()
 //   arrives(index, surface, &light): false if the surface is turned away from it
 //   ray(index, surface, origin): the shadow ray to it from the surface's safe origin
-// Finds the sources `first`, `first` + `step`, …
-template <std::uint32_t step, class Source, std::uint32_t capacity>
-void find_sources(const Source& source, const Surface& surface, std::uint32_t first, SentLights<capacity>* rays) {
-  CHECK_LE(source.count, capacity * step);
+//   of_place(place): the sources of a place in the pattern, with their count and, by [], indices
+// Finds some sources.
+template <class Source, class Indices, std::uint32_t capacity>
+void find_sources(const Source& source, const Surface& surface, const Indices& indices, SentLights<capacity>* rays) {
+  CHECK_LE(indices.count, capacity);
   rays->count = 0, rays->least = rays->enough = 0, rays->open = {0, 0, 0};
   if (is_zero(surface.diffuse)) return;
   rays->origin = safe_origin(surface, 1);
   float all = 0;
-  for (std::uint32_t index = first; index < source.count; index += step) {
+  for (std::uint32_t k = 0; k < indices.count; ++k) {
+    const std::uint32_t index = indices[k];
     SentLight* r = &rays->sent[rays->count];
     if (!source.arrives(index, surface, &r->light)) continue;
     r->most = max_component(r->light), r->source = index;
@@ -121,7 +131,7 @@ void gather_interleaved(const FrameData& frame, const InterleavedPoints& points,
   const HitFilter* filter = frame.filter_every_shadow ? &opaque : nullptr;
   PixelLights found;
   for (std::uint32_t i = 0; i < points.count; ++i) {
-    find_sources<kPatternPixels>(source, *points.surface[i], points.place[i], &found);
+    find_sources(source, *points.surface[i], source.of_place(points.place[i]), &found);
     light[i] = InterleavedLight();
     light[i].open = light[i].lit = found.open;
     if (!casts_shadows) continue;
@@ -135,7 +145,7 @@ void gather_interleaved(const FrameData& frame, const InterleavedPoints& points,
 template <class Source>
 std::uint32_t list_source_rays(const Source& source, const Surface& surface, std::uint32_t place, SourceRay* rays) {
   PixelLights found;
-  find_sources<kPatternPixels>(source, surface, place, &found);
+  find_sources(source, surface, source.of_place(place), &found);
   std::uint32_t count = 0;
   each_group(found, [&](const RayGroup& group) {
     rays[count++] = {group.sent->source, source.ray(group.sent->source, surface, found.origin)};

@@ -9,14 +9,25 @@
 namespace pocketray {
 namespace {
 
+static_assert(kVirtualLightPlaces == kPatternPixels, "each has a place in the pattern");
+
+struct ListedIndices {
+  const std::uint16_t* index;
+  std::uint32_t count;
+  std::uint32_t operator[](std::uint32_t k) const { return index[k]; }
+};
+
 struct VirtualSource {
   // Chosen: a quarter of the rays are spared, and ꟻLIP against full transport changes by less than .003.
   static constexpr float kFaint = 0.5f;
   const VirtualLights& lights;
   float geometry_max;
-  std::uint32_t count;
   float tolerance;
 
+  ListedIndices of_place(std::uint32_t place) const {
+    const std::uint16_t* first = &lights.first_of_place[place];
+    return {lights.of_place + first[0], static_cast<std::uint32_t>(first[1] - first[0])};
+  }
   [[gnu::always_inline]] bool arrives(std::uint32_t index, const Surface& s, Vec3* light) const {
     return pocketray::arrives(lights.light[index], geometry_max, s, light);
   }
@@ -29,7 +40,7 @@ struct VirtualSource {
 // or two by default. See tests/indirect/FIGURES.md.
 VirtualSource source_of(const FrameData& frame) {
   const VirtualLights& lights = *virtual_lights_of(frame.indirect);
-  return {lights, lights.first_geometry_max, lights.count, frame.settings.light_tolerance * kPatternPixels};
+  return {lights, lights.first_geometry_max, frame.settings.light_tolerance * kPatternPixels};
 }
 
 std::uint32_t count(const FrameData& frame) { return virtual_lights_of(frame.indirect)->count; }
@@ -77,8 +88,8 @@ void add_later_virtual_light(Tracer* tracer, const Vec3& weight, Surface* surfac
   // Measured in cornell's mirror, 64 lights: ꟻLIP against all rays is .040, with half the tolerance .028, without
   // shadows .096.
   const float tolerance = frame.settings.light_tolerance / max_component(weight);
-  const VirtualSource source = {lights, lights.geometry_max, lights.count, tolerance};
-  find_sources<1>(source, s, 0, &found);
+  const VirtualSource source = {lights, lights.geometry_max, tolerance};
+  find_sources(source, s, SteppedIndices<1>(0, lights.count), &found);
   const ShadowContext context = {&frame, kNone};
   const HitFilter opaque = {frame.accept_opaque, &context, frame.filters_read_point};
   const Vec3 lit = arriving_light(source, s, found, [&](const Ray& ray) {

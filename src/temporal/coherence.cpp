@@ -28,7 +28,7 @@ bool differ(const T* last, const Array<const T>& now) {
 bool same_virtual_lights(const VirtualLights& a, const VirtualLights& b) {
   return a.count == b.count && a.geometry_max == b.geometry_max &&
          std::equal(a.light, a.light + a.count, b.light, [](const VirtualLight& x, const VirtualLight& y) {
-           return x.position == y.position && x.normal == y.normal && x.intensity == y.intensity;
+           return x.position == y.position && x.normal == y.normal && x.intensity == y.intensity && x.place == y.place;
          });
 }
 

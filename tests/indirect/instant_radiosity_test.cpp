@@ -195,7 +195,8 @@ struct RoomWithTurningBoxes : Room {
 };
 
 bool same_light(const VirtualLight& a, const VirtualLight& b) {
-  return same_pixel(a.position, b.position) && same_pixel(a.normal, b.normal) && same_pixel(a.intensity, b.intensity);
+  return same_pixel(a.position, b.position) && same_pixel(a.normal, b.normal) && same_pixel(a.intensity, b.intensity) &&
+         a.place == b.place;
 }
 
 std::uint32_t lights_kept(const VirtualLights& a, const VirtualLights& b) {
@@ -371,7 +372,7 @@ TEST_CASE("instant_radiosity_of_many_lights_shares_rays") {
   direct.indirect = IndirectChoice::none;
   const double direct_rays = rays_of(*rendered(room.scene, direct));
   for (std::uint32_t count : {64u, 512u})
-    for (float tolerance : {0x1p-10f, 0x1p-6f, 0x1p-4f}) {
+    for (float tolerance : {0x1p-12f, 0x1p-6f, 0x1p-4f}) {
       Settings settings = instant_settings(count);
       settings.light_tolerance = tolerance;
       std::unique_ptr<TestRenderer> shared = rendered(room.scene, settings);
@@ -400,12 +401,23 @@ TEST_CASE("instant_radiosity_of_many_lights_shares_rays") {
     }
 }
 
-// Goal: a virtual light names the triangle that it lies on, which does not block its shadow rays.
-TEST_CASE("virtual_lights_name_their_triangle") {
+// Goal: a virtual light names the triangle that it lies on, which does not block its shadow rays, and is listed once,
+// at its place in the pattern, which has its share of the lights.
+TEST_CASE("virtual_lights_name_their_triangle_and_place") {
   const Room room(true);
   std::unique_ptr<TestRenderer> t = rendered(room.scene, instant_settings(128));
   const VirtualLights& lights = lights_of(*t);
   REQUIRE(lights.count > 64);
+  REQUIRE((lights.first_of_place[0] == 0 && lights.first_of_place[kVirtualLightPlaces] == lights.count));
+  for (std::uint32_t place = 0; place < kVirtualLightPlaces; ++place) {
+    const std::uint32_t begin = lights.first_of_place[place], end = lights.first_of_place[place + 1];
+    CHECK((end - begin) * kVirtualLightPlaces > lights.count / 3);
+    for (std::uint32_t k = begin; k < end; ++k) {
+      REQUIRE(lights.of_place[k] < lights.count);
+      CHECK(lights.light[lights.of_place[k]].place == place);
+      if (k > begin) CHECK(lights.of_place[k - 1] < lights.of_place[k]);
+    }
+  }
   for (std::uint32_t i = 0; i < lights.count; ++i) {
     REQUIRE(lights.light[i].triangle < room.triangles.size());
     const Triangle& triangle = room.triangles[lights.light[i].triangle];

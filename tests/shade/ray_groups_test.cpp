@@ -25,6 +25,7 @@ struct RandomSources {
   float tolerance;
   const float* brightness;
 
+  SteppedIndices<kPatternPixels> of_place(std::uint32_t place) const { return {place, count}; }
   bool arrives(std::uint32_t index, const Surface&, Vec3* light) const {
     *light = Vec3{1, 0.5f, 0.25f} * brightness[index];
     return *light != Vec3{0, 0, 0};
