@@ -7,8 +7,9 @@
 
 namespace pocketray {
 
-// A point of a diffuse surface that sends intensity × cosine to the side of its normal. Pixels at its place in the
-// pattern of shade/interleaved.h take it: by its walk and bounce, so that it stays there when others change.
+// A point of a diffuse surface that sends intensity × cosine to the side of its normal. It belongs to the pixels at one
+// place of the pattern in shade/interleaved.h, chosen by its walk and bounce, so that it stays there when others
+// change.
 struct VirtualLight {
   Vec3 position, normal, intensity;
   std::uint32_t triangle, place;
@@ -19,7 +20,7 @@ constexpr std::uint32_t kVirtualLightPlaces = 16,
 struct VirtualLights {
   VirtualLight light[kVirtualLightRoom];
   std::uint32_t count = 0;
-  // The indices of those of a place lie from first_of_place[place] on, up to the next place's.
+  // Indices of the lights by place: those of a place begin at first_of_place[place].
   std::uint16_t of_place[kVirtualLightRoom], first_of_place[kVirtualLightPlaces + 1] = {};
   double lights_per_walk = 0, area = -1;  // of the scene, by measure_walks(); area −1: not measured yet
   // Bound of the geometry term, cos cos / distance²: without it, a light would be infinitely bright where it lies

@@ -32,7 +32,7 @@ constexpr double kPrimes[kNumbersPerBounce * (kBounceMax + 1)] = {
 // what its rays meet is not compensated; see tests/indirect/FIGURES.md.
 constexpr double kBound = 0.25, kCompensatedBound = 0.0625;
 
-// Of a walk's bounce, in the pattern: walks that follow each other lie in its four quarters in turn, and so do bounces.
+// The place of a walk's bounce in the pattern. Successive walks, and bounces of one, take its four quarters in turn.
 std::uint32_t place_in_pattern(std::uint32_t walk, std::uint32_t bounce) {
   return (4 * walk + walk / 4 + 5 * bounce) % kVirtualLightPlaces;
 }
@@ -202,7 +202,7 @@ void sort_lights(const FrameData& frame, VirtualLights* lights) {
   }
 }
 
-// Lists the lights of each place, in order. Of too many, the last ones move to the next place.
+// Lists the lights of each place, in order. If there are too many at a place, the last ones move to the next.
 void list_places(VirtualLights* lights) {
   std::uint32_t counts[kVirtualLightPlaces] = {};
   for (std::uint32_t i = 0; i < lights->count; ++i) {

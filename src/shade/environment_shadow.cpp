@@ -36,6 +36,8 @@ std::uint32_t count(const FrameData& frame) { return frame.environment_lights->c
 
 Vec3 place(const FrameData& frame, std::uint32_t index) { return frame.environment_lights->light[index].direction; }
 
+std::uint32_t place_in_pattern(const FrameData&, std::uint32_t index) { return index % kPatternPixels; }
+
 std::uint32_t list_rays(const FrameData& frame, const Surface& surface, std::uint32_t place_in_pattern,
                         SourceRay* rays) {
   return list_source_rays(source_of(frame), surface, place_in_pattern, rays);
@@ -57,7 +59,7 @@ Vec3 irradiance(const FrameData& frame, const Vec3&, const Vec3& normal, const I
 
 }  // namespace
 
-const InterleavedSource kEnvironmentSource = {
-    Effect::environment_shadow, true, true, count, place, list_rays, gather, irradiance};
+const InterleavedSource kEnvironmentSource = {Effect::environment_shadow, true,      true,   count,     place,
+                                              place_in_pattern,           list_rays, gather, irradiance};
 
 }  // namespace pocketray

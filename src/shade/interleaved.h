@@ -63,6 +63,7 @@ struct InterleavedSource {
   bool reads_open;  // irradiance() reads InterleavedLight::open even where many pixels show the surface
   std::uint32_t (*count)(const FrameData& frame);
   Vec3 (*place)(const FrameData& frame, std::uint32_t index);  // a point, or the direction towards a distant one
+  std::uint32_t (*place_in_pattern)(const FrameData& frame, std::uint32_t index);  // whose pixels take it
   // Lists the shadow rays of a first hit, at most kSourcesOfPixelMax, and returns their number.
   std::uint32_t (*list_rays)(const FrameData& frame, const Surface& surface, std::uint32_t place_in_pattern,
                              SourceRay* rays);

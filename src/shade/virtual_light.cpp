@@ -18,7 +18,8 @@ struct ListedIndices {
 };
 
 struct VirtualSource {
-  // Chosen: a quarter of the rays are spared, and ꟻLIP against full transport changes by less than .003.
+  // Chosen: without a tolerance, a quarter of the rays are spared, and ꟻLIP against full transport changes by less than
+  // .003.
   static constexpr float kFaint = 0.5f;
   const VirtualLights& lights;
   float geometry_max;
@@ -47,6 +48,10 @@ std::uint32_t count(const FrameData& frame) { return virtual_lights_of(frame.ind
 
 Vec3 place(const FrameData& frame, std::uint32_t index) {
   return virtual_lights_of(frame.indirect)->light[index].position;
+}
+
+std::uint32_t place_in_pattern(const FrameData& frame, std::uint32_t index) {
+  return virtual_lights_of(frame.indirect)->light[index].place;
 }
 
 std::uint32_t list_rays(const FrameData& frame, const Surface& surface, std::uint32_t place_in_pattern,
@@ -99,7 +104,7 @@ void add_later_virtual_light(Tracer* tracer, const Vec3& weight, Surface* surfac
   surface->glow += s.diffuse * (lit * (1 / kPiF));
 }
 
-const InterleavedSource kVirtualLightSource = {
-    Effect::instant_radiosity, false, false, count, place, list_rays, gather, irradiance};
+const InterleavedSource kVirtualLightSource = {Effect::instant_radiosity, false,     false,  count,     place,
+                                               place_in_pattern,          list_rays, gather, irradiance};
 
 }  // namespace pocketray

@@ -55,7 +55,7 @@ PathSuspects suspect_paths(const ChangeSearch& search, const TileHits& hits, con
   const std::uint32_t count = kVirtualLightSource.count(frame);
   for (std::uint32_t i = 0; i < count; ++i)
     if ((!among || among->virtual_lights.has(i)) && virtual_lights_meet_change(search, i, ends))
-      suspects.virtual_lights.add(i);
+      suspects.virtual_lights.add(i, i % kPatternPixels);
   suspects.any =
       suspects.first || suspects.lights || suspects.virtual_lights.places || frame.lights.count > kSuspectLights;
   return suspects;

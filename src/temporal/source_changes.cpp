@@ -21,7 +21,7 @@ SourceSets suspect_sources(const ChangeSearch& search, const TileHits& hits, con
     for (std::uint32_t i = 0; i < count; ++i) {
       if (among && !among->of[kind].has(i)) continue;
       if (meets_change(*search.moving, source_beam(source, source.place(frame, i), hits.points, hits.room)))
-        suspects.of[kind].add(i);
+        suspects.of[kind].add(i, source.place_in_pattern(frame, i));
     }
   }
   return suspects;

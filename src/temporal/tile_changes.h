@@ -64,9 +64,9 @@ struct SourceSet {
   std::uint64_t bits[(kInterleavedSourceMax + 63) / 64] = {};
   std::uint32_t places = 0;
 
-  void add(std::uint32_t index) {
+  void add(std::uint32_t index, std::uint32_t place_in_pattern) {
     bits[index / 64] |= std::uint64_t(1) << (index % 64);
-    places |= 1u << (index % kPatternPixels);
+    places |= 1u << place_in_pattern;
   }
   bool has(std::uint32_t index) const { return bits[index / 64] >> (index % 64) & 1; }
 };
