@@ -106,7 +106,7 @@ struct CompensationRays {
   Vec3 from_virtual_lights(const Surface& s) const {
     const Vec3 origin = safe_origin(s, 1);
     Choice choice = {spread_number(place, kStepOfVirtualLights)};
-    // In their order in space, of which every sixteenth stands for all better than those of a place.
+    // Every sixteenth in spatial order, which represents all of them better than the lights of one place do.
     for (std::uint32_t i = place; i < lights.count; i += kPatternPixels) {
       Candidate candidate = {{0, 0, 0}, {}, kNone, static_cast<std::uint16_t>(i)};
       if (!arrives(lights.light[i], lights.geometry_max, s, &candidate.irradiance)) continue;

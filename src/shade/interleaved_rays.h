@@ -42,7 +42,7 @@ using PixelLights = SentLights<kSourcesOfPixelMax>;
 //   arrives(index, surface, &light): false if the surface is turned away from it
 //   ray(index, surface, origin): the shadow ray to it from the surface's safe origin
 //   of_place(place): the sources of a place in the pattern, with their count and, by [], indices
-// Finds some sources.
+// Finds those of the indices that light the surface.
 template <class Source, class Indices, std::uint32_t capacity>
 void find_sources(const Source& source, const Surface& surface, const Indices& indices, SentLights<capacity>* rays) {
   CHECK_LE(indices.count, capacity);
