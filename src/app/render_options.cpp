@@ -264,6 +264,9 @@ std::vector<std::string> unexpected(const RenderOptions& o, const RenderRequest&
                   sequence ? "the last frame, at" : "--time", last, duration > 0 ? std::fmod(last, duration) : 0);
     notes.push_back(text);
   }
+  const bool single = !request.sequence.given || request.sequence.last == request.sequence.first;
+  if (single && renderer.settings.resolution == Resolution::interleaved)
+    notes.push_back("a single picture has no last one to build on: interleaved traces a plain checkerboard");
   const bool many = renderer.settings.samples_per_pixel > 1;
   if (many && request.aov != Aov::none && request.aov != Aov::cost)
     notes.push_back("--samples has no effect on --aov " + o.aov + ", which is that of the pixels' centres");

@@ -5,6 +5,7 @@
 #include "base/check.h"
 #include "base/limit_list.h"
 #include "plan/plan_scene.h"
+#include "plan/unused_settings.h"
 #include "platform/memory.h"
 #include "session/environment.h"
 #include "session/focus.h"
@@ -72,6 +73,7 @@ Status open_scene(const CommonOptions& o, const OpenHooks& hooks, OpenScene* ope
   CHECK(opened->block == nullptr);  // opened once
   Settings settings;
   RETURN_IF_ERROR(read_settings(o, &settings));
+  opened->asked = settings;
   Isa isa;
   RETURN_IF_ERROR(parse_isa(o.isa, &isa));
   select_isa(isa);
@@ -149,9 +151,9 @@ void print_notes(const OpenScene& opened) {
   const Renderer& renderer = opened.renderer;
   if (renderer.settings.coherence == CoherenceMode::on && !renderer.coherence_state.planned)
     std::fprintf(stderr, "pocketray: --coherence on has no effect: %s\n", renderer.coherence_state.unplanned_because);
-  const EffectDecision& selective = renderer.effects.decisions[static_cast<int>(Effect::selective)];
-  if (renderer.settings.selective_contrast > 0 && !selective.on && selective.reason[0])
-    std::fprintf(stderr, "pocketray: --selective has no effect: %s\n", selective.reason);
+  if (renderer.scene.triangles.empty()) return;  // a server has the scene
+  const UnusedSettings unused = find_unused_settings(renderer.scene, opened.asked);
+  for (int i = 0; i < unused.count; ++i) print_note(unused.notes[i]);
 }
 
 }  // namespace pocketray

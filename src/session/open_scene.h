@@ -12,6 +12,7 @@ namespace pocketray {
 struct OpenScene {
   Renderer renderer;
   SceneSource source;
+  Settings asked;  // by the command line, before a budget chooses
   void* block = nullptr;
   OpenScene() = default;
   OpenScene(const OpenScene&) = delete;

@@ -21,7 +21,7 @@ expect dithered_picture 1 '--dither is for .raw' render cube "${small[@]}" --dit
 expect bake_baked 1 'pray' bake refused.pray -o again.pray
 expect coherence_of_neighbours 0 'coherence on has no effect: ' \
   render seesaw "${small[@]}" --frames 0:1 --coherence on --selective .2 -o ignored.ppm
-expect selective_is_ignored 0 'selective has no effect: instant radiosity' \
+expect selective_is_ignored 0 'selective has no effect: selective is off .instant radiosity' \
   render cornell "${small[@]}" --selective .2 --indirect instant-radiosity -o ignored.ppm
 expect plan_counts_lamps 0 '1 emitting material;' plan cornell "${small[@]}"
 if "${run[@]}" view --help >/dev/null 2>&1; then
