@@ -37,6 +37,22 @@ void print_share(const Servers& servers, std::uint32_t width) {
   for (int i = 0; i < lines.line_count; ++i) std::printf("    %s\n", lines.lines[i]);
 }
 
+// Rays that --depth ended. A bound beyond white means only that a pixel may be anything the display shows.
+void print_ended_rays(const Renderer& renderer, const Tracer& counts) {
+  std::printf("  %s ended at depth %u; the surroundings stand in for what they would see: ",
+              counted(counts.rays_ended, "ray").c_str(), renderer.settings.ray_depth);
+  const double share = static_cast<double>(counts.ended_weight_max);
+  if (share < 1)
+    std::printf("up to %.2g %% of a sample, ", 100 * share);
+  else
+    std::printf("up to a whole sample, ");
+  const double whites = static_cast<double>(counts.ended_bound_max * renderer.exposure);
+  if (whites < 1)
+    std::printf("an error of at most %.2g of white\n", whites);
+  else
+    std::printf("an error that may reach white; a greater --depth lowers it\n");
+}
+
 }  // namespace
 
 void print_summary(const RenderSummary& s) {
@@ -63,13 +79,7 @@ void print_summary(const RenderSummary& s) {
     std::printf("  %s rays skipped, which could change a sample by at most %.2g of a display level in total\n",
                 grouped(counts.rays_left_out).c_str(),
                 static_cast<double>(counts.left_out_share_max * renderer.settings.cut_off_levels));
-  if (counts.ended_weight_max >= kEndedWeightTold)
-    std::printf(
-        "  %s ended at depth %u; the surroundings stand in for what they would see, with a weight of up to %.2g %% of "
-        "a sample, which differs from one without that end by at most %.2g of white\n",
-        counted(counts.rays_ended, "ray").c_str(), renderer.settings.ray_depth,
-        100 * static_cast<double>(counts.ended_weight_max),
-        static_cast<double>(counts.ended_bound_max * renderer.exposure));
+  if (counts.ended_weight_max >= kEndedWeightTold) print_ended_rays(renderer, counts);
   if (s.servers) print_share(*s.servers, renderer.settings.width);
   if (s.budget) print_budget(*s.budget, s.frame_count == 1);
 }

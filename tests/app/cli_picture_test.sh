@@ -22,8 +22,13 @@ expect still_sequence 0 'all frames are equal: the scene does not move' render c
 expect still_time 0 'time has no effect: the scene does not move' render cube "${small[@]}" --time 2 -o s.ppm
 expect time_beyond_the_animation 0 'begins anew then: --time 12 s shows' render seesaw "${small[@]}" --time 12 -o s.ppm
 expect samples_of_aov 0 'samples has no effect on --aov depth' render cube "${small[@]}" --samples 4 --aov depth -o s.ppm
+expect interleaved_needs_two 0 'a single picture has no last one' render cube "${small[@]}" --resolution interleaved -o s.ppm
+expect compensation_of_nothing 0 'compensation has no effect: instant-radiosity is off .ambient instead.; --indirect instant-radiosity' \
+  render cornell "${small[@]}" --compensation rays -o s.ppm
+expect ended_rays_in_words 0 'an error that may reach white; a greater --depth lowers it' \
+  render cornell "${small[@]}" --depth 0 -o s.ppm
 check no_note_without_need bash -c '! "$@" 2>&1 | grep -q pocketray:' _ "${run[@]}" render seesaw "${small[@]}" --frames 3:4 -o s.ppm
-expect ended_rays_are_told 0 'ended at depth 0; the surroundings stand in.*by at most [0-9.]+ of white' render cornell "${small[@]}" --depth 0 -o s.ppm
+expect ended_rays_are_told 0 'ended at depth 0; the surroundings stand in.*: up to [0-9.]+ % of a sample, an error of at most [0-9.]+ of white' render cornell "${small[@]}" --depth 0 --exposure=-6 -o s.ppm
 check no_ended_rays_are_told bash -c '! "$@" | grep -q "ended at depth"' _ "${run[@]}" render cornell "${small[@]}" --depth 8 -o s.ppm
 expect render_png 0 'ns per pixel' render "$subject" "${small[@]}" -o a.png
 check png_magic test "$(head -c 8 a.png | od -An -tx1 | tr -d ' \n')" = 89504e470d0a1a0a
