@@ -19,26 +19,42 @@ Progress start_progress(const char* what, std::uint64_t total) {
   return p;
 }
 
+double seconds_left(TimeEstimate* e, double elapsed, double share) {
+  CHECK(e != nullptr && share > 0 && share <= 1 && elapsed >= 0);
+  // Chosen: speeds that grow or fall with the square root of time, whose estimates are off by two and more, are not
+  // steady.
+  constexpr double kWindow = 1.5, kSteady = 1.2;
+  constexpr double kShareMin = 1.0 / 32;  // chosen: less of the work does not speak for the rest
+  if (elapsed >= kWindow * e->since_seconds && elapsed > e->since_seconds && share >= e->since_share) {
+    const double speed = (share - e->since_share) / (elapsed - e->since_seconds), before = e->speed;
+    e->is_steady = speed > 0 && speed <= kSteady * before && before <= kSteady * speed;
+    e->since_seconds = elapsed, e->since_share = share, e->speed = speed;
+  }
+  return e->is_steady && share >= kShareMin ? (1 - share) / e->speed : -1;
+}
+
 void show_progress(Progress* p, std::uint64_t done) {
   constexpr std::uint64_t kSecond = 1000000000;
   // Chosen: ten times a second looks continuous, a line every 10 s keeps logs short, and what takes less than a second
   // needs none.
   std::uint64_t now = clock_ns(), interval = p->terminal ? kSecond / 10 : 10 * kSecond;
-  if (now - p->start_ns < kSecond || (p->shown && now - p->shown_ns < interval) || done == 0 || p->total == 0) return;
+  if (done == 0 || p->total == 0) return;
+  const double share = done < p->total ? static_cast<double>(done) / static_cast<double>(p->total) : 1;
+  const double left = seconds_left(&p->estimate, static_cast<double>(now - p->start_ns) * 1e-9, share);
+  if (now - p->start_ns < kSecond || (p->shown && now - p->shown_ns < interval)) return;
   p->shown_ns = now;
   p->shown = true;
-  double share =
-      done < p->total ? static_cast<double>(done) / static_cast<double>(p->total) : 1;  // totals are estimates
-  double left = static_cast<double>(now - p->start_ns) * 1e-9 * (1 - share) / share;
+  char left_text[32] = "";
+  if (left >= 0) std::snprintf(left_text, sizeof left_text, ", %.0f s left", left);
   if (p->terminal) {
     char bar[31];
     int filled = static_cast<int>(share * 30);
     std::memset(bar, '.', 30);
     std::memset(bar, '#', static_cast<std::size_t>(filled < 0 ? 0 : filled > 30 ? 30 : filled));
     bar[30] = 0;
-    std::fprintf(stderr, "\r%s [%s] %3.0f %%, %.0f s left \033[K", p->what, bar, share * 100, left);
+    std::fprintf(stderr, "\r%s [%s] %3.0f %%%s \033[K", p->what, bar, share * 100, left_text);
   } else {
-    std::fprintf(stderr, "%s: %.0f %%, %.0f s left\n", p->what, share * 100, left);
+    std::fprintf(stderr, "%s: %.0f %%%s\n", p->what, share * 100, left_text);
   }
 }
 

@@ -6,10 +6,22 @@
 
 namespace pocketray {
 
+// Predicts the remaining time of work whose speed may change, as a solver's that first refines its problem.
+struct TimeEstimate {
+  double since_seconds = 0, since_share = 0;  // where the present window of time begins
+  double speed = 0;                           // shares per second in the last window
+  bool is_steady = false;
+};
+// Returns the remaining seconds after `elapsed` seconds and a share in (0, 1] of the work, or a negative number while
+// the speed still changes by more than a fifth from one window to the next. Windows grow with the elapsed time. Call it
+// often.
+double seconds_left(TimeEstimate* estimate, double elapsed, double share);
+
 struct Progress {
   const char* what = "";
   std::uint64_t total = 0;
   std::uint64_t start_ns = 0, shown_ns = 0;
+  TimeEstimate estimate;
   bool terminal = false, shown = false;
 };
 
