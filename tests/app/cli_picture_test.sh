@@ -28,7 +28,7 @@ expect compensation_of_nothing 0 'compensation has no effect: instant-radiosity 
 expect ended_rays_in_words 0 'an error that may reach white; a greater --depth lowers it' \
   render cornell "${small[@]}" --depth 0 -o s.ppm
 check no_note_without_need bash -c '! "$@" 2>&1 | grep -q pocketray:' _ "${run[@]}" render seesaw "${small[@]}" --frames 3:4 -o s.ppm
-expect ended_rays_are_told 0 'ended at depth 0; the surroundings stand in.*: up to [0-9.]+ % of a sample, an error of at most [0-9.]+ of white' render cornell "${small[@]}" --depth 0 --exposure=-6 -o s.ppm
+expect ended_rays_are_told 0 'ended at depth 0; the surroundings stand in.*: up to [0-9.]+ % of a sample, an error of at most [0-9.]+ of white' render cornell "${small[@]}" --depth 0 --exposure=-12 -o s.ppm
 check no_ended_rays_are_told bash -c '! "$@" | grep -q "ended at depth"' _ "${run[@]}" render cornell "${small[@]}" --depth 8 -o s.ppm
 expect render_png 0 'ns per pixel' render "$subject" "${small[@]}" -o a.png
 check png_magic test "$(head -c 8 a.png | od -An -tx1 | tr -d ' \n')" = 89504e470d0a1a0a
