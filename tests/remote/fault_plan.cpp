@@ -12,7 +12,8 @@
 namespace pocketray {
 namespace {
 
-constexpr std::uint64_t kFarLightWaitNs = 20'000'000'000;  // ten times what light may take until its server is dropped
+// Thirty times as long as light may take until its server is dropped.
+constexpr std::uint64_t kFarLightWaitNs = 60'000'000'000;
 constexpr int kSizes[][2] = {{8, 8}, {16, 12}, {8, 40}}, kLargerSizes[][2] = {{12, 60}, {8, 64}, {16, 48}};
 
 // Normalised to a mean of 1, so that all rows together cost what the plan says.
@@ -140,9 +141,20 @@ FaultPlan draw_far_faults(std::uint64_t seed) {
   plan.split = kinds[random.below(std::size(kinds))];
   if (plan.split == SplitKind::rows) return plan;
   plan.device_share = -1;
+  // Servers come into use only where the device's frame takes longer than a round trip.
+  const double trips = random.scale(0.5, 20), frame_ns = plan.device_ns * plan.width * plan.height;
+  const double longer = std::max(1.0, trips * 2 * static_cast<double>(plan.line.latency_ns) / frame_ns);
+  plan.device_ns *= longer;
+  for (double& ns : plan.server_ns) ns *= longer;
   plan.light_wait_ns = random.below(3) ? 0 : kFarLightWaitNs;
   for (std::uint32_t i = 0; i < plan.server_count; ++i)
-    if (random.below(3) == 0) plan.malice[i] = static_cast<Malice>(kRowMaliceCount + random.below(3));
+    if (random.below(2) == 0) plan.malice[i] = static_cast<Malice>(kRowMaliceCount + random.below(3));
+  // Nothing but one server keeps light from coming.
+  if (plan.split == SplitKind::effect && plan.server_count > 1 && random.below(2)) {
+    plan.line.fault_count = plan.event_count = plan.neighbour_count = 0;
+    for (Malice& malice : plan.malice) malice = Malice::none;
+    plan.malice[random.below(plan.server_count)] = Malice::no_light;
+  }
   return plan;
 }
 

@@ -78,7 +78,7 @@ bool is_right(const FaultWorld& w, int second) {
 bool is_left_dark(const FaultWorld& w) {
   const FaultPlan& plan = w.plan;
   if (plan.split != SplitKind::effect || w.peace || w.faults_struck > 0 || plan.neighbour_count > 0) return false;
-  if (w.elapsed() - w.lit_ns < kUnlitNsMax + 40 * plan.line.latency_ns) return false;
+  if (w.elapsed() - w.lit_ns < kUnlitNsMax + 40 * plan.line.latency_ns + 4 * w.local_ns) return false;
   for (std::uint32_t i = 0; i < plan.server_count; ++i) {
     bool is_good = plan.malice[i] == Malice::none && w.client.servers[i].phase >= ServerPhase::probing;
     for (int k = 0; k < plan.event_count; ++k) is_good = is_good && plan.events[k].server != i;
@@ -140,8 +140,7 @@ std::string run_frame(FaultWorld* w, SessionResult* result) {
   if (!lies && !share.by_effect) *worst = std::max(*worst, ratio);
   double check_pixels = std::max(1, plan.check_count);
   if (share.by_effect) {
-    const double waits = plan.light_wait_ns > 0 ? plan.server_count * 2.0 * kSilenceNs + 8e0 * plan.line.latency_ns : 0;
-    if (ratio > kEffectTimeMax + waits / static_cast<double>(w->local_ns))
+    if (ratio > kEffectTimeMax + light_wait_max_ns(plan) / static_cast<double>(w->local_ns))
       return fail(*w, "waits long for light", ratio);
   } else {
     result->frames_late += !lies && ratio > kTimeMax + check_pixels / (plan.width * plan.height);

@@ -77,7 +77,7 @@ TEST_CASE("faults_simulated_sessions_end_well") {
 TEST_CASE("faults_far_sessions_end_well") {
   bool single = std::getenv("POCKETRAY_FAULT_SEED") && !std::getenv("POCKETRAY_FAULT_SESSIONS");
   std::uint64_t seed = number_of("POCKETRAY_FAULT_SEED", 1);
-  std::uint64_t count = single ? 1 : (number_of("POCKETRAY_FAULT_SESSIONS", effort(160)) + 7) / 8;
+  std::uint64_t count = single ? 1 : (number_of("POCKETRAY_FAULT_SESSIONS", effort(240)) + 7) / 8;
   int failures = 0, frames = 0, by_effect = 0, lit = 0, losses = 0, late = 0;
   for (std::uint64_t i = 0; i < count; ++i, ++seed) {
     const FaultPlan plan = draw_far_faults(seed);

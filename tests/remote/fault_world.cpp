@@ -243,7 +243,8 @@ platform::LinkResult read_world(platform::Link* link, int stream, void* bytes, s
   if (cost > 0) platform::kNullLink.poll(link, nullptr, 0, cost);
   Outside outside;
   double frame_ns = static_cast<double>(world->elapsed() - world->frame_begin_ns);
-  bool takes_long = world->plan.has_scene && frame_ns > kStuckTimes * static_cast<double>(world->local_ns);
+  bool takes_long = world->plan.has_scene &&
+                    frame_ns > kStuckTimes * static_cast<double>(world->local_ns) + light_wait_max_ns(world->plan);
   world->stuck = world->stuck || ++world->reads > kStuckReads || takes_long;
   for (Place& place : world->places)
     if (place.hostile && !place.frozen && !world->stuck) step_hostile_server(place.hostile.get());

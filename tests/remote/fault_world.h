@@ -57,6 +57,12 @@ struct FaultWorld {
   std::uint64_t elapsed() const { return platform::null_link_record(link).elapsed_ns; }
 };
 
+// How long the device may wait for light in a frame: for an overture, and until each server has been given up.
+inline double light_wait_max_ns(const FaultPlan& plan) {
+  if (plan.light_wait_ns == 0) return 0;
+  return plan.server_count * 2.0 * static_cast<double>(kSilenceNs) + 40 * static_cast<double>(plan.line.latency_ns);
+}
+
 // Opens the world, with the device not yet connected. Only one world at a time.
 void open_fault_world(const FaultPlan& plan, FaultWorld* world);
 void close_fault_world(FaultWorld* world);
