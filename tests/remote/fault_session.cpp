@@ -194,6 +194,7 @@ bool is_back(const FaultWorld& w, std::uint32_t i) {
   const FaultPlan& plan = w.plan;
   if (w.client.servers[i].lied) return true;  // it stays out
   ServerPhase phase = w.client.servers[i].phase;
+  if (plan.split == SplitKind::effect) return phase >= ServerPhase::probing;  // of several, one is asked for light
   double rows_ns = 2 * static_cast<double>(plan.line.latency_ns + plan.line.jitter_ns) +
                    plan.server_count * (4 * plan.server_ns[i] * dearest_row(plan) + 2e6);
   return phase == ServerPhase::ready || (phase == ServerPhase::probing && rows_ns > w.client.share.measured_ns / 4);

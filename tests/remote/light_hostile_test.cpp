@@ -196,3 +196,21 @@ TEST_CASE("light_comes_from_the_next_server") {
       close_fault_world(&world);
     }
 }
+
+// Goal: a server that is asked for nothing, as others light all frames, keeps its connection. Method: two servers and
+// frames by effect, for much longer than servers keep a silent client.
+TEST_CASE("light_of_one_server_keeps_the_other_connected") {
+  FaultPlan plan = draw_faults(1);
+  plan.width = 16, plan.height = 12, plan.server_count = 2;
+  plan.device_ns = 100e3, plan.server_ns[0] = plan.server_ns[1] = 1e3, plan.device_share = -1;
+  plan.line = platform::NullLinkSettings(), plan.line.clock_step_ns = 20, plan.event_count = 0;
+  plan.split = SplitKind::effect;
+  FaultWorld world;
+  open_fault_world(plan, &world);
+  for (int i = 0; world.elapsed() < 5 * kServerIdleNs; ++i)
+    REQUIRE(render_frame(device_renderer(plan), &world.client, kFaultSeconds[i % 2]).ok);
+  for (std::uint32_t i = 0; i < 2; ++i) CHECK(world.client.servers[i].phase >= ServerPhase::probing);
+  CHECK(world.log.empty());
+  close_client(&world.client);
+  close_fault_world(&world);
+}

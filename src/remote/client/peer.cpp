@@ -12,7 +12,7 @@ namespace {
 
 // Chosen: seldom enough to cost nothing, often enough that a server returns within a second. `make faults` tests that a
 // flapping server is retried ever less often.
-constexpr std::uint64_t kIdlePingNs = 500'000'000;  // between pings of a server without rows
+constexpr std::uint64_t kIdlePingNs = 500'000'000;  // between pings of a server that is asked for nothing
 // A connection useful for this many times the wait before it was sound, so the next attempt comes soon.
 constexpr std::uint64_t kLastingWaits = 10;
 // Per server and poll, and no more rows than a picture has. Derived: about twice the messages of 240 rows in the
@@ -328,7 +328,7 @@ void advance_server(Client* client, RemoteServer* server) {
   if (is_light_overdue(client, server)) return lose_server(client, server, "it did not send its light in time");
   if (!is_awaited(*client, *server)) {
     server->timer = platform::link_timer(now, silence_limit_ns(*client, *server));
-    if (server->phase == ServerPhase::ready && now >= server->ping_due_ns) {
+    if (server->phase >= ServerPhase::probing && now >= server->ping_due_ns) {
       server->ping_due_ns = now + kIdlePingNs;
       send_ping(client, server, 0);
     }
