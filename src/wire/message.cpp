@@ -284,6 +284,18 @@ constexpr PayloadSize kPayloadSizes[] = {
 constexpr std::uint32_t kTypeCount = sizeof kPayloadSizes / sizeof kPayloadSizes[0];
 static_assert(kTypeCount == static_cast<std::uint32_t>(MessageType::light_map) + 1, "one for each type");
 
+// The fields of any request, zeros behind them.
+struct RequestBytes {
+  static constexpr PayloadSize kSize = kPayloadSizes[static_cast<std::uint32_t>(MessageType::frame_request)];
+  std::uint8_t bytes[kSize.fields + kSize.tail_max] = {};
+};
+// False for one that no reader takes.
+bool write_request(FrameRequest request, RequestBytes* to) {
+  Writer writer = {to->bytes};
+  fields(writer, &request);
+  return writer.valid;
+}
+
 // A hello of another version ends after magic and version, or continues in any way.
 constexpr std::uint32_t kForeignHelloBytesMin = 6, kForeignHelloBytesMax = 256;
 
@@ -362,6 +374,7 @@ void encode_message(const Message& message, std::uint8_t* bytes) {
   Message copy = message;  // encoding only reads through the pointers that decoding writes through
   Writer writer = {bytes + kHeaderBytes};
   fields_of_type(writer, &copy);
+  CHECK(writer.valid);
   CHECK_EQ(writer.at - (bytes + kHeaderBytes), static_cast<std::ptrdiff_t>(payload));
   writer.at = bytes;
   std::uint8_t type = static_cast<std::uint8_t>(message.type);
@@ -393,15 +406,16 @@ void take_change(const FrameRequest& change, FrameRequest* request) {
 }
 
 bool is_change(const FrameRequest& request, const FrameRequest& before) {
-  constexpr PayloadSize kSize = kPayloadSizes[static_cast<std::uint32_t>(MessageType::frame_request)];
-  std::uint8_t bytes[2][kSize.fields + kSize.tail_max] = {};
-  FrameRequest changed[2] = {request, before};
-  take_change(request, &changed[1]);
-  for (int i = 0; i < 2; ++i) {
-    Writer writer = {bytes[i]};
-    fields(writer, &changed[i]);
-  }
-  return std::memcmp(bytes[0], bytes[1], sizeof bytes[0]) == 0;
+  RequestBytes change, wanted, made;
+  FrameRequest sent = request, received, result = before;
+  Writer writer = {change.bytes};
+  change_fields(writer, &sent);
+  Reader reader = {change.bytes, writer.at};
+  change_fields(reader, &received);
+  if (!writer.valid || !reader.valid) return false;
+  take_change(received, &result);
+  return write_request(request, &wanted) && write_request(result, &made) &&
+         std::memcmp(wanted.bytes, made.bytes, sizeof wanted.bytes) == 0;
 }
 
 }  // namespace pocketray

@@ -272,7 +272,8 @@ std::uint32_t light_map_prefix_bytes();
 
 // Applies a frame_change to the previous request: number, time, camera, rows and their order, coarse picture.
 void take_change(const FrameRequest& change, FrameRequest* request);
-// Whether a frame_change can express how `request` differs from `before`.
+// Whether a receiver that has `before` and takes the frame_change of `request` gets exactly that; otherwise it must be
+// sent whole.
 bool is_change(const FrameRequest& request, const FrameRequest& before);
 
 }  // namespace pocketray

@@ -2,6 +2,7 @@
 // changed before it is sent.
 #include <algorithm>
 #include <map>
+#include <tuple>
 
 #include "base/check.h"
 #include "engine/frame.h"
@@ -23,7 +24,9 @@ namespace {
 using Bytes = std::vector<std::uint8_t>;
 constexpr std::uint64_t kMs = 1'000'000;
 constexpr double kDeviceNs = 100e3;  // per pixel: 19 ms per frame
-constexpr int kFrames = 3;
+// At least; of frames whose way to be shared is chosen, enough for both ways and a second trial of the slower one.
+constexpr int kFrames = 3, kChosenFrames = 3 * (kTrialFrames + kRetryFramesMin), kFramesMax = 2 * kChosenFrames;
+constexpr std::uint64_t kLatenciesNs[] = {0, kMs, 20 * kMs, 120 * kMs};  // each way
 constexpr std::size_t kFloodMessages = 300;
 const platform::LinkBackend& net = platform::kNullLink;
 
@@ -42,12 +45,17 @@ struct Peer {
 };
 Peer* peer = nullptr;
 
-const Bytes& picture_of(WireFormat format, double seconds) {
-  static std::map<std::pair<int, double>, Bytes> pictures;
-  Bytes& pixels = pictures[{static_cast<int>(format), seconds}];
+// The right pixels of a request, by a renderer of the server's own.
+const Bytes& picture_of(const FrameRequest& q) {
+  static std::map<std::tuple<int, int, double>, Bytes> pictures;
+  const WireFormat format = q.format;
+  Bytes& pixels = pictures[{static_cast<int>(format), static_cast<int>(q.settings.indirect), q.seconds}];
   if (!pixels.empty()) return pixels;
-  Renderer* renderer = fuzz_renderer();
-  CHECK(render_frame(renderer, seconds).ok);
+  Renderer* renderer = fuzz_renderer(FuzzSide::server);
+  Settings settings = renderer->settings;
+  settings.indirect = q.settings.indirect;
+  CHECK(change_settings(renderer, settings).ok);
+  CHECK(render_frame(renderer, q.seconds).ok);
   int line_bytes = static_cast<int>(kFuzzWidth * pixel_bytes(format));
   pixels.resize(static_cast<std::size_t>(line_bytes) * kFuzzHeight);
   pack_rows(renderer->image.data, kFuzzWidth, kFuzzHeight, 0, kFuzzHeight, renderer->exposure,
@@ -107,7 +115,7 @@ void send_rows() {
   RowChunk* chunk = &message.row_chunk;
   chunk->frame = q.frame, chunk->pixel_ps = 10'000'000, chunk->traced = 255;
   chunk->row_begin = static_cast<std::uint16_t>(begin), chunk->row_count = static_cast<std::uint16_t>(row_count);
-  const Bytes& picture = picture_of(q.format, q.seconds);
+  const Bytes& picture = picture_of(q);
   std::uint32_t count =
       encode_rows(peer->encoder, q.frame, begin, row_count, picture.data() + begin * kFuzzWidth * pixel_bytes(q.format),
                   q.coding, encoded.data(), &chunk->encoding);
@@ -239,7 +247,7 @@ platform::LinkBackend both_backend() {
 const platform::LinkBackend kBothLink = both_backend();
 
 // Renders frames like `render` and `view`.
-void share_frames(FuzzInput* input, std::uint8_t flags) {
+void share_frames(FuzzInput* input, std::uint8_t flags, std::uint64_t latency_ns) {
   Renderer* renderer = fuzz_renderer();
   ClientOptions o;
   o.has_scene = flags & 1;
@@ -252,7 +260,7 @@ void share_frames(FuzzInput* input, std::uint8_t flags) {
   o.light.split = flags & 32 ? by_effect : SplitKind::rows;
   o.light.indirect = settings.indirect;
   o.pace.ns_per_pixel = kDeviceNs;
-  o.silence_timeout_ns = o.prepare_timeout_ns = o.connect_timeout_ns = 300 * kMs;
+  o.silence_timeout_ns = o.prepare_timeout_ns = o.connect_timeout_ns = 300 * kMs + 2 * latency_ns;
   o.retry_ns_min = kMs, o.retry_ns_max = 20 * kMs;
   static Bytes memory;
   memory.resize(client_need(renderer->settings, o.format, 1, o.light) + kArenaAlignment);
@@ -262,7 +270,8 @@ void share_frames(FuzzInput* input, std::uint8_t flags) {
   platform::Error error;
   CHECK(net.resolve("127.0.0.1:4000", &address, &error));
   CHECK(make_client(o, renderer->settings, fuzz_store().scenes[0].hash, peer->link, &address, 1, &arena, &client).ok);
-  for (int frame = 0; frame < kFrames || (input->left > 0 && frame < 10 * kFrames); ++frame) {
+  const int frames = o.light.split == SplitKind::automatic ? kChosenFrames : kFrames;
+  for (int frame = 0; frame < frames || (input->left > 0 && frame < kFramesMax); ++frame) {
     CHECK(begin_frame(renderer, &client, 0.25 * (frame % 4)).ok);
     const std::uint64_t begin = client_now_ns(client) - peer->stalled_ns;
     while (!advance_frame(renderer, &client, client_now_ns(client) + 5 * kMs, nullptr)) {
@@ -271,15 +280,15 @@ void share_frames(FuzzInput* input, std::uint8_t flags) {
       CHECK_LT(took, 20'000 * kMs);
     }
     fuzz_counts.frames += has_all_rows(client), fuzz_counts.coarse += client.coarse_shown;
-    fuzz_counts.lit += client.share.has_light;
+    fuzz_counts.lit += client.share.has_light, fuzz_counts.by_effect += client.share.by_effect;
     fuzz_counts.server_rows += client.share.server_rows[0];
-    for (int i = 0; i < 4; ++i) advance_client(&client, 5 * kMs);
+    for (int i = 0; i < 4; ++i) advance_client(&client, 5 * kMs + latency_ns);
   }
   close_client(&client);
 }
 
 // Inquiries before the first frame.
-void inquire(FuzzInput*, std::uint8_t) {
+void inquire() {
   InquiryOptions o;
   o.connect_timeout_ns = o.silence_timeout_ns = 300 * kMs;
   o.answer_timeout_ns = 2'000 * kMs;
@@ -307,7 +316,7 @@ void fuzz_client(const std::uint8_t* bytes, std::size_t byte_count) {
   std::uint8_t flags = input.byte();
   platform::NullLinkSettings line;
   line.clock_step_ns = 100;
-  line.latency_ns = flags & 4 ? kMs : 0;
+  line.latency_ns = kLatenciesNs[(flags >> 2 & 1) + (flags >> 6 & 2)];
   FuzzLink link(line);
   platform::Error error;
   Peer here;
@@ -316,7 +325,7 @@ void fuzz_client(const std::uint8_t* bytes, std::size_t byte_count) {
   CHECK_GE(here.listener, 0);
   peer = &here;
   link.link->backend = &kBothLink;
-  flags & 8 ? inquire(&input, flags) : share_frames(&input, flags);
+  flags & 8 ? inquire() : share_frames(&input, flags, line.latency_ns);
   link.link->backend = &net;
   peer = nullptr;
 }

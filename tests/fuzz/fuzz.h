@@ -56,7 +56,7 @@ std::vector<FuzzSeed> server_seeds();
 struct FuzzCounts {
   std::uint64_t messages = 0, chunks = 0, pictures = 0, scenes = 0, imports = 0, frames = 0, fronts = 0, texts = 0,
                 states = 0;
-  std::uint64_t server_rows = 0, answers = 0, coarse = 0, lit = 0;
+  std::uint64_t server_rows = 0, answers = 0, coarse = 0, lit = 0, by_effect = 0, changes = 0;
 };
 inline FuzzCounts fuzz_counts;
 

@@ -23,6 +23,7 @@ struct SmallCodec {
   Bytes block, chunk;
   RowEncoder* encoder = nullptr;
   RowDecoder* decoder = nullptr;
+  FrameRequest request;  // the last
 
   explicit SmallCodec(WireFormat format)
       : shape{24, 16, 4, format},
@@ -39,7 +40,33 @@ SmallCodec& codec_of(WireFormat format) {
   if (!codec) codec = std::make_unique<SmallCodec>(format);
   restart_row_encoder(codec->encoder);
   restart_row_decoder(codec->decoder);
+  codec->request = FrameRequest();
   return *codec;
+}
+
+// A change is built only where a receiver that has the other request makes exactly this one of it.
+void check_change(const FrameRequest& request, const FrameRequest& before) {
+  if (!is_change(request, before)) return;
+  Message change, read, made, wanted;
+  change.type = MessageType::frame_change, change.frame_request = request;
+  Bytes bytes(message_bytes(change));
+  encode_message(change, bytes.data());
+  CHECK(decode_message(bytes.data(), bytes.size(), kMessageBytesMax, &read).state == DecodeState::message);
+  made.type = wanted.type = MessageType::frame_request;
+  made.frame_request = before, wanted.frame_request = request;
+  take_change(read.frame_request, &made.frame_request);
+  Bytes made_bytes(message_bytes(made)), wanted_bytes(message_bytes(wanted));
+  encode_message(made, made_bytes.data()), encode_message(wanted, wanted_bytes.data());
+  CHECK(made_bytes == wanted_bytes);
+  ++fuzz_counts.changes;
+}
+
+// Of requests that follow each other, each as a change of the other.
+void take_request(const Message& message, FrameRequest* last) {
+  FrameRequest request = message.frame_request;
+  if (message.type == MessageType::frame_change) request = *last, take_change(message.frame_request, &request);
+  check_change(request, *last), check_change(*last, request);
+  *last = request;
 }
 
 // Takes a message off the front, as a copy of exact size so that a sanitizer notices overreads. False if there is none.
@@ -57,6 +84,8 @@ bool take_message(const std::uint8_t** bytes, std::size_t* byte_count, SmallCode
     encode_message(message, again.data());
     CHECK(again == alone);
   }
+  if (message.type == MessageType::frame_request || message.type == MessageType::frame_change)
+    take_request(message, &codec->request);
   if (message.type == MessageType::row_chunk) fuzz_counts.chunks += decode_rows(codec->decoder, message.row_chunk);
   ++fuzz_counts.messages;
   *bytes += decoded.byte_count, *byte_count -= decoded.byte_count;

@@ -74,9 +74,10 @@ TEST_CASE("fuzz_message_corpus_and_damaged_seeds") {
   check_committed("message", message_seeds());
   fuzz_counts = FuzzCounts();
   for (const FuzzSeed& seed : message_seeds()) fuzz_message(seed.bytes.data(), seed.bytes.size());
-  CHECK(fuzz_counts.messages == 34);
+  CHECK(fuzz_counts.messages == 38);
   CHECK(fuzz_counts.chunks == 48);
   CHECK(fuzz_counts.pictures == 18);
+  CHECK(fuzz_counts.changes == 6);  // rows to rows, light to both, and back; and a frame_change
   damage(message_seeds(), fuzz_message, effort(400));
   CHECK(replay("message", fuzz_message) >= 10);
 }
@@ -141,6 +142,7 @@ TEST_CASE("fuzz_client_corpus_and_damaged_seeds") {
   CHECK(fuzz_counts.server_rows > 100);
   CHECK(fuzz_counts.coarse > 5);
   CHECK(fuzz_counts.lit > 1);
+  CHECK(fuzz_counts.by_effect > 12);
   CHECK(fuzz_counts.scenes == 1);
   CHECK(fuzz_counts.messages == 1);  // views
   damage(client_seeds(), fuzz_client, effort(20));

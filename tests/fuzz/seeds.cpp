@@ -1,3 +1,4 @@
+#include <array>
 #include <cstdint>
 
 #include "accel/accel_list.h"
@@ -83,6 +84,16 @@ std::vector<FuzzSeed> message_seeds() {
     seeds.push_back({"type_" + std::to_string(type), sealed});
   }
   seeds.push_back({"every_type", all});
+  // Rows, other rows, light alone, rows and light.
+  Bytes requests = {0};
+  Message request = sample_message(MessageType::frame_request, &rng, {});
+  FrameRequest* q = &request.frame_request;
+  q->settings.height = 40, q->run_count = 0;
+  for (const auto& part : {std::array<std::uint8_t, 3>{0, 9, 0}, {9, 40, 0}, {0, 0, 6}, {5, 6, 6}}) {
+    q->row_begin = part[0], q->row_end = part[1], q->light_pitch = part[2];
+    append(&requests, encoded(request));
+  }
+  seeds.push_back({"requests", requests});
   for (WireFormat format : {WireFormat::rgb565, WireFormat::rgb888})
     for (RowCoding coding : {RowCoding::raw, RowCoding::lossless, RowCoding::near_lossless}) {
       const char* codings[] = {"raw", "lossless", "near_lossless"};
@@ -166,10 +177,16 @@ std::vector<FuzzSeed> client_seeds() {
     bytes[0] = flags;
     seeds.push_back({flags == 16 ? "thin_coarse" : "scene_coarse", bytes});
   }
-  for (std::uint8_t flags : {33, 97}) {
+  // Frames by effect, and by what is faster, over links of every latency.
+  const std::pair<const char*, std::uint8_t> kLit[] = {{"scene_light", 33},
+                                                       {"scene_light_and_rows", 97},
+                                                       {"scene_light_and_rows_near", 101},
+                                                       {"scene_light_and_rows_far", 225},
+                                                       {"scene_light_and_rows_farthest", 229}};
+  for (const auto& lit : kLit) {
     Bytes bytes(16, 0);
-    bytes[0] = flags;
-    seeds.push_back({flags == 33 ? "scene_light" : "scene_light_and_rows", bytes});
+    bytes[0] = lit.second;
+    seeds.push_back({lit.first, bytes});
   }
   // As below, of the light map.
   seeds.push_back({"changes_a_light_map", {33, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 192, 9, 1, 0, 192, 20, 255, 0}});
@@ -195,6 +212,9 @@ std::vector<FuzzSeed> server_seeds() {
           {"views", {4, 2, 8, 0, 0, 0, 0, 0, 7, 3, 8, 0, 0, 0, 0, 1, 7}},
           {"changed", {4, 6, 4, 0, 0, 1, 1, 60, 255, 0, 7, 8, 8, 0, 0, 0, 0, 30, 1, 0, 7}},
           {"not_greeted", {0, 10, 9, 4, 1, 2, 3, 4, 0, 3, 12, 8, 1, 2, 3, 4, 5, 6, 7, 8, 0, 7}},
+          // Rows, light alone, light and rows, rows; far away.
+          {"light", {13, 2, 4, 0, 0,  1,  1, 0, 0, 7, 2, 4, 0, 0, 226, 1, 0, 0, 7,
+                     2,  4, 0, 0, 99, 81, 0, 0, 7, 2, 4, 0, 0, 4, 5,   0, 0, 7}},
           {"hangs_up", {4, 2, 4, 0, 0, 1, 1, 0, 1, 46, 0, 1, 31, 2, 0, 0, 0, 0, 0, 0, 7}}};
 }
 

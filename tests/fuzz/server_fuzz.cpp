@@ -53,7 +53,7 @@ struct Stage {
     platform::Error error;
     hang_up(client);
     // Fails until the server has noticed that earlier connections are gone, as the link has only a few.
-    client->stream = net.connect(link.link, link.address, 100 * kMs, &error);
+    client->stream = net.connect(link.link, link.address, 500 * kMs, &error);
   }
 };
 
@@ -93,14 +93,22 @@ Message sensible_message(FuzzInput* input) {
   m.scene_fetch.byte_count = 256 * input->byte();
   m.ping = {7, 16u * input->byte()};
   FrameRequest* q = &m.frame_request;
-  q->frame = 1 + input->byte() % 16, q->scene = scene.hash;
+  const std::uint8_t frame = input->byte(), shape = input->byte();
+  q->frame = 1 + frame % 16, q->scene = scene.hash;
   q->settings.width = kFuzzWidth, q->settings.height = kFuzzHeight;
   q->row_end = kFuzzHeight;
-  q->chunk_rows = 1 + input->byte() % 4;
+  q->chunk_rows = 1 + shape % 4;
+  q->coarse_first = frame & 16;
+  q->light_pitch = frame & 32 ? 6 : 0;
+  if (frame & 64) q->settings.indirect = indirect_choice(Effect::instant_radiosity);
+  q->seconds = 0.25 * (shape >> 2 & 3);
+  q->row_begin = shape >> 4 & 7;
+  const bool has_light_alone = (frame & 128) && q->light_pitch > 0;
   // Sometimes an order that begins with the upper rows.
-  if (std::uint8_t cut = input->byte() % (2 * kFuzzHeight); cut > 0 && cut < kFuzzHeight) {
+  if (has_light_alone) q->row_end = q->row_begin;
+  if (std::uint8_t cut = input->byte() % (2 * kFuzzHeight); cut > 0 && q->row_begin + cut < q->row_end) {
     q->run_count = 2;
-    q->runs[0] = {cut, 0}, q->runs[1] = {static_cast<std::uint8_t>(kFuzzHeight - cut), 1};
+    q->runs[0] = {cut, 0}, q->runs[1] = {static_cast<std::uint8_t>(q->row_end - q->row_begin - cut), 1};
   }
   m.view_query.settings = q->settings;
   m.cancel.frame = q->frame;
@@ -161,7 +169,7 @@ void fuzz_server(const std::uint8_t* bytes, std::size_t byte_count) {
   FuzzInput input = {bytes, byte_count};
   std::uint8_t flags = input.byte();
   platform::NullLinkSettings line;
-  line.latency_ns = flags & 1 ? kMs : 0;
+  line.latency_ns = flags & 1 ? (flags & 8 ? 100 * kMs : kMs) : 0;
   line.bytes_per_second = flags & 2 ? 100'000 : 0;
   Stage stage(line);
   if (flags & 4)

@@ -34,11 +34,12 @@ const SceneStore& fuzz_store() {
   return store;
 }
 
-Renderer* fuzz_renderer() {
+Renderer* fuzz_renderer(FuzzSide side) {
   static std::unique_ptr<BuiltScene> built;
-  static std::unique_ptr<TestRenderer> test;
+  static std::unique_ptr<TestRenderer> tests[2];
+  std::unique_ptr<TestRenderer>& test = tests[static_cast<int>(side)];
+  if (!built) built = build_builtin("cube");
   if (!test) {
-    built = build_builtin("cube");
     Settings settings;
     settings.width = kFuzzWidth, settings.height = kFuzzHeight;
     settings.memory_bytes = 8u << 20;

@@ -41,8 +41,9 @@ struct FuzzLink {
 // The built-in cube in a server's store.
 const SceneStore& fuzz_store();
 constexpr std::uint32_t kFuzzWidth = 16, kFuzzHeight = 12;
-// A renderer for pictures of it of that size.
-Renderer* fuzz_renderer();
+// A renderer for pictures of it of that size, for either side.
+enum class FuzzSide { device, server };
+Renderer* fuzz_renderer(FuzzSide side = FuzzSide::device);
 
 // The message on the wire.
 std::vector<std::uint8_t> wire_bytes(const Message& message);

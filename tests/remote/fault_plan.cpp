@@ -12,6 +12,8 @@
 namespace pocketray {
 namespace {
 
+// Thirty times as long as light may take until its server is dropped.
+constexpr std::uint64_t kFarLightWaitNs = 60'000'000'000;
 constexpr int kSizes[][2] = {{8, 8}, {16, 12}, {8, 40}}, kLargerSizes[][2] = {{12, 60}, {8, 64}, {16, 48}};
 
 // Normalised to a mean of 1, so that all rows together cost what the plan says.
@@ -43,7 +45,7 @@ void set_size(FaultPlan* plan, std::uint32_t width, std::uint32_t height) {
 
 // Excludes malice that only spot checks reveal.
 Malice draw_malice(FaultRandom* random) {
-  Malice malice = static_cast<Malice>(1 + random->below(kMaliceCount - 2));
+  Malice malice = static_cast<Malice>(1 + random->below(kRowMaliceCount - 2));
   return malice >= Malice::wrong_pixels ? static_cast<Malice>(static_cast<int>(malice) + 1) : malice;
 }
 
@@ -83,6 +85,8 @@ FaultPlan draw_faults(std::uint64_t seed) {
   }
   plan.has_scene = true;
   plan.coarse_first = false;
+  plan.frames = kFaultFrames;
+  plan.split = SplitKind::rows;
   plan.check_count = kCheckCountAuto;
   plan.rows = "alike";
   for (float& cost : plan.row_costs) cost = 1;
@@ -122,12 +126,61 @@ FaultPlan draw_hostile_faults(std::uint64_t seed) {
   return plan;
 }
 
+FaultPlan draw_far_faults(std::uint64_t seed) {
+  FaultPlan plan = draw_hostile_faults(seed);
+  std::uint64_t other_seed = seed ^ 0x2545F4914F6CDD1D;
+  FaultRandom random = {platform::random_u64(&other_seed)};
+  plan.line.latency_ns = static_cast<std::uint64_t>(random.scale(2.5e6, 250e6));
+  plan.frames = kFarFrames;
+  for (PlannedEvent& e : plan.events) {
+    e.frame *= kFarFrames / kFaultFrames, e.back_frame *= kFarFrames / kFaultFrames;
+  }
+  if (!plan.has_scene) return plan;
+  const SplitKind kinds[] = {SplitKind::rows,      SplitKind::automatic, SplitKind::automatic,
+                             SplitKind::automatic, SplitKind::effect,    SplitKind::effect};
+  plan.split = kinds[random.below(std::size(kinds))];
+  if (plan.split == SplitKind::rows) return plan;
+  plan.device_share = -1;
+  // Servers come into use only where the device's frame takes longer than a round trip.
+  const double trips = random.scale(0.5, 20), frame_ns = plan.device_ns * plan.width * plan.height;
+  const double longer = std::max(1.0, trips * 2 * static_cast<double>(plan.line.latency_ns) / frame_ns);
+  plan.device_ns *= longer;
+  for (double& ns : plan.server_ns) ns *= longer;
+  plan.light_wait_ns = random.below(3) ? 0 : kFarLightWaitNs;
+  for (std::uint32_t i = 0; i < plan.server_count; ++i)
+    if (random.below(2) == 0) plan.malice[i] = static_cast<Malice>(kRowMaliceCount + random.below(3));
+  // Nothing but one server keeps light from coming.
+  if (plan.split == SplitKind::effect && plan.server_count > 1 && random.below(2)) {
+    plan.line.fault_count = plan.event_count = plan.neighbour_count = 0;
+    for (Malice& malice : plan.malice) malice = Malice::none;
+    plan.malice[random.below(plan.server_count)] = Malice::no_light;
+  }
+  return plan;
+}
+
 const char* malice_name(Malice malice) {
-  static const char* const kNames[kMaliceCount] = {
-      "none",           "pongs",         "entries",     "errors",      "old rows",  "wrong pixels",
-      "foreign rows",   "repeated rows", "free pixels", "dear pixels", "any price", "another scene",
-      "another hello",  "quick pongs",   "dawdles",     "flaps",       "junk",      "a device's messages",
-      "coarse pictures"};
+  static const char* const kNames[kMaliceCount] = {"none",
+                                                   "pongs",
+                                                   "entries",
+                                                   "errors",
+                                                   "old rows",
+                                                   "wrong pixels",
+                                                   "foreign rows",
+                                                   "repeated rows",
+                                                   "free pixels",
+                                                   "dear pixels",
+                                                   "any price",
+                                                   "another scene",
+                                                   "another hello",
+                                                   "quick pongs",
+                                                   "dawdles",
+                                                   "flaps",
+                                                   "junk",
+                                                   "a device's messages",
+                                                   "coarse pictures",
+                                                   "no light",
+                                                   "other light",
+                                                   "held rows"};
   return kNames[static_cast<int>(malice)];
 }
 
@@ -142,12 +195,16 @@ std::string plan_text(const FaultPlan& plan) {
   std::snprintf(
       text, sizeof text,
       "%ux%u %s%s, device %.0f ns per pixel, share %.2f, servers %u: %.0f %.0f %.0f, %.0f kB/s, latency %.2f ms, "
-      "jitter %.2f ms, rows %s, %.1f ns per byte%s",
+      "jitter %.2f ms, rows %s, %.1f ns per byte%s%s%s",
       plan.width, plan.height, plan.format == WireFormat::rgb565 ? "rgb565" : "rgb888", plan.dither ? " dithered" : "",
       plan.device_ns, plan.device_share, plan.server_count, plan.server_ns[0], plan.server_ns[1], plan.server_ns[2],
       static_cast<double>(plan.line.bytes_per_second) / 1e3, static_cast<double>(plan.line.latency_ns) / 1e6,
       static_cast<double>(plan.line.jitter_ns) / 1e6, plan.rows, plan.read_ns,
-      plan.has_scene ? "" : ", no scene on the device");
+      plan.has_scene ? "" : ", no scene on the device",
+      plan.split == SplitKind::rows     ? ""
+      : plan.split == SplitKind::effect ? ", by effect"
+                                        : ", by what is faster",
+      plan.light_wait_ns > 0 ? ", waits for light" : "");
   std::string all = text;
   for (int i = 0; i < plan.line.fault_count; ++i) {
     const platform::NullFault& f = plan.faults[i];

@@ -5,11 +5,13 @@
 #include <string>
 
 #include "platform/null/net/null_link.h"
+#include "split/effect_choice.h"
 #include "wire/message.h"
 
 namespace pocketray {
 
-constexpr int kFaultFrames = 10;       // frames with faults
+constexpr int kFaultFrames = 10;       // frames with faults,
+constexpr int kFarFrames = 200;        // and of sessions with latency
 constexpr int kSessionFaultsMax = 4;   // on the line
 constexpr int kSessionEventsMax = 4;   // of servers
 constexpr int kFaultyConnections = 5;  // the first ones of all servers
@@ -52,8 +54,11 @@ enum class Malice : std::uint8_t {
   junk,             // sends malformed messages
   device_messages,  // sends messages that only devices send
   coarse_pictures,  // sends coarse pictures at any time, some of another size
+  no_light,         // answers pings and sends rows, but no light
+  other_light,      // sends light of other frames than it was asked for, or twice
+  held_rows,        // holds rows back, and sends them as those of a request for light alone
 };
-constexpr int kMaliceCount = 19;
+constexpr int kMaliceCount = 22, kRowMaliceCount = 19;  // the latter know nothing of light
 const char* malice_name(Malice malice);
 
 // Behaviour of other clients of the servers.
@@ -94,8 +99,11 @@ struct FaultPlan {
   int check_count;  // servers' pixels checked per frame, as in ClientOptions
   Neighbour neighbours[kNeighboursMax];
   int neighbour_count;
-  bool has_scene;     // false: the device leaves all to the servers
-  bool coarse_first;  // it asks for a coarse picture of every frame
+  bool has_scene;               // false: the device leaves all to the servers
+  bool coarse_first;            // it asks for a coarse picture of every frame
+  int frames;                   // with faults
+  SplitKind split;              // by effect: the servers' light is instant radiosity
+  std::uint64_t light_wait_ns;  // as in LightOptions
   std::uint64_t seed;
 };
 
@@ -103,6 +111,8 @@ struct FaultPlan {
 FaultPlan draw_faults(std::uint64_t seed);
 // The same with larger pictures, unequal rows, malicious servers and hostile neighbours.
 FaultPlan draw_hostile_faults(std::uint64_t seed);
+// The same over links of 5 to 500 ms there and back, for many frames, which are shared in every way.
+FaultPlan draw_far_faults(std::uint64_t seed);
 std::string plan_text(const FaultPlan& plan);
 
 }  // namespace pocketray

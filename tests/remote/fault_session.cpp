@@ -16,6 +16,11 @@ constexpr double kTimeMax = 1.05;
 // Limit for every frame, since kTimeMax holds only once the device has measured single rows: see frames_late. The worst
 // of 10^6 frames was 1.25, with 8 rows of which the uppermost costs a quarter of the frame.
 constexpr double kTimeLimit = 1.3;
+// Of frames by effect, which wait for light as long as their rows took, and add it.
+constexpr double kEffectTimeMax = 2 * kTimeLimit;
+// Without light from an honest server that nothing disturbs: until another has been given up, and with a wait of that
+// other's return.
+constexpr std::uint64_t kUnlitNsMax = 8 * kSilenceNs;
 // When a lie is found, the liar's rows are rendered again.
 constexpr double kLieTimeMax = 2 * kTimeLimit;
 constexpr double kSettledMax = 1.5;  // relative to the best split, plus two rows that the device begins in vain
@@ -40,10 +45,46 @@ std::string phases(const FaultWorld& w) {
   return text;
 }
 
+// A frame by rows is the device's own. In one by effect, an honest server's rows are the same, and the device's have
+// its own light; or any that servers send, which never takes light away.
 bool is_right(const FaultWorld& w, int second) {
   const std::vector<std::uint8_t>& expected = device_picture(w.plan, second);
   const Array<std::uint8_t>& pixels = w.client.pixels;
-  return std::equal(pixels.begin(), pixels.end(), expected.begin(), expected.end());
+  const FrameShare& share = w.client.share;
+  if (!share.by_effect) return std::equal(pixels.begin(), pixels.end(), expected.begin(), expected.end());
+  const std::vector<std::uint8_t>&own = device_picture(w.plan, second, Lighting::own),
+        &direct = device_picture(w.plan, second, Lighting::direct);
+  const std::size_t row_bytes = pixels.count / w.plan.height;
+  for (std::uint32_t row = 0; row < w.plan.height; ++row) {
+    const MergeRow& merged = w.client.merge.rows[row];
+    const std::size_t begin = row * row_bytes;
+    auto equals = [&](const std::vector<std::uint8_t>& right) {
+      return std::equal(pixels.begin() + begin, pixels.begin() + begin + row_bytes,
+                        right.begin() + static_cast<std::ptrdiff_t>(begin));
+    };
+    if (merged.state == RowState::server) {
+      if (w.plan.malice[merged.server] == Malice::none && !equals(expected)) return false;
+    } else if (!share.has_light) {
+      if (!equals(own)) return false;
+    } else if (w.plan.format == WireFormat::rgb888 && !w.plan.dither) {
+      for (std::size_t i = begin; i < begin + row_bytes; ++i)
+        if (pixels[static_cast<std::uint32_t>(i)] < direct[i]) return false;
+    }
+  }
+  return true;
+}
+
+// Whether light has not come for long though a server that nothing disturbs could send it.
+bool is_left_dark(const FaultWorld& w) {
+  const FaultPlan& plan = w.plan;
+  if (plan.split != SplitKind::effect || w.peace || w.faults_struck > 0 || plan.neighbour_count > 0) return false;
+  if (w.elapsed() - w.lit_ns < kUnlitNsMax + 40 * plan.line.latency_ns + 4 * w.local_ns) return false;
+  for (std::uint32_t i = 0; i < plan.server_count; ++i) {
+    bool is_good = plan.malice[i] == Malice::none && w.client.servers[i].phase >= ServerPhase::probing;
+    for (int k = 0; k < plan.event_count; ++k) is_good = is_good && plan.events[k].server != i;
+    if (is_good) return true;
+  }
+  return false;
 }
 
 void begin_frame(FaultWorld* w) {
@@ -79,6 +120,10 @@ std::string run_frame(FaultWorld* w, SessionResult* result) {
   double ns = static_cast<double>(w->elapsed() - w->frame_begin_ns);
   note_faults();
   if (!is_right(*w, second)) return fail(*w, "is not the device's own");
+  const FrameShare& share = w->client.share;
+  result->by_effect += share.by_effect, result->lit += share.has_light;
+  if (share.has_light) w->lit_ns = w->elapsed();
+  if (is_left_dark(*w)) return fail(*w, "has no server's light, as those before: " + phases(*w));
   bool calm = !w->disturbed && (w->disturbed_ns == 0 || w->frame_begin_ns > w->disturbed_ns + kSilenceNs);
   double ratio = (ns - static_cast<double>(w->lost_ns)) / static_cast<double>(w->local_ns);
   ++result->frames, result->frames_disturbed += !calm;
@@ -92,10 +137,15 @@ std::string run_frame(FaultWorld* w, SessionResult* result) {
   result->server_kept += std::any_of(w->client.model.rows.begin(), w->client.model.rows.end(), keeps);
   bool lies = w->client.share.lies > 0;
   double* worst = calm ? &result->worst_calm : &result->worst_disturbed;
-  if (!lies) *worst = std::max(*worst, ratio);
+  if (!lies && !share.by_effect) *worst = std::max(*worst, ratio);
   double check_pixels = std::max(1, plan.check_count);
-  result->frames_late += !lies && ratio > kTimeMax + check_pixels / (plan.width * plan.height);
-  if (ratio > (lies ? kLieTimeMax : kTimeLimit)) return fail(*w, "is late", ratio);
+  if (share.by_effect) {
+    if (ratio > kEffectTimeMax + light_wait_max_ns(plan) / static_cast<double>(w->local_ns))
+      return fail(*w, "waits long for light", ratio);
+  } else {
+    result->frames_late += !lies && ratio > kTimeMax + check_pixels / (plan.width * plan.height);
+    if (ratio > (lies ? kLieTimeMax : kTimeLimit)) return fail(*w, "is late", ratio);
+  }
   if (w->log.size() > lines_before + 4 * plan.server_count + w->client.share.lies)
     return fail(*w, "is reported too often");
   return "";
@@ -144,6 +194,7 @@ bool is_back(const FaultWorld& w, std::uint32_t i) {
   const FaultPlan& plan = w.plan;
   if (w.client.servers[i].lied) return true;  // it stays out
   ServerPhase phase = w.client.servers[i].phase;
+  if (plan.split == SplitKind::effect) return phase >= ServerPhase::probing;  // of several, one is asked for light
   double rows_ns = 2 * static_cast<double>(plan.line.latency_ns + plan.line.jitter_ns) +
                    plan.server_count * (4 * plan.server_ns[i] * dearest_row(plan) + 2e6);
   return phase == ServerPhase::ready || (phase == ServerPhase::probing && rows_ns > w.client.share.measured_ns / 4);
@@ -172,7 +223,7 @@ std::string check_log(const FaultWorld& w, SessionResult* result) {
 
 std::string run_troubles(FaultWorld* w, SessionResult* result) {
   const FaultPlan& plan = w->plan;
-  for (w->frame = 0; w->frame < kFaultFrames; ++w->frame) {
+  for (w->frame = 0; w->frame < plan.frames; ++w->frame) {
     for (int i = 0; i < plan.event_count; ++i)
       if (w->done[i] && plan.events[i].back_frame == w->frame) bring_back(plan.events[i].server);
     std::string failure = run_any_frame(w, result);
@@ -193,7 +244,7 @@ std::string run_return(FaultWorld* w, SessionResult* result) {
   // Long enough to notice dead connections.
   std::uint64_t quiet_ns = kSilenceNs + 600 * kMs;
   while (!all_ready() || w->elapsed() - begin < quiet_ns) {
-    if (!all_ready() && w->elapsed() - begin > kReturnNsMax + 10 * w->local_ns)
+    if (!all_ready() && w->elapsed() - begin > kReturnNsMax + 10 * w->local_ns + 200 * w->plan.line.latency_ns)
       return fail(*w, "not all servers are in use again: " + phases(*w));
     std::string failure = run_any_frame(w, result);
     if (!failure.empty()) return failure;
@@ -206,7 +257,7 @@ std::string run_return(FaultWorld* w, SessionResult* result) {
 
 // Frame time relative to the best split, for the best of some frames, as a link may be under measurement.
 std::string run_settled(FaultWorld* w, SessionResult* result) {
-  if (!w->plan.has_scene || w->plan.device_share >= 0) return "";
+  if (!w->plan.has_scene || w->plan.device_share >= 0 || w->plan.frames > kFaultFrames) return "";
   std::vector<double> times;
   for (int i = 0; i < kSettleFrames + kJudgedFrames; ++i, ++w->frame) {
     std::string failure = run_any_frame(w, result);

@@ -15,6 +15,7 @@ struct SessionResult {
   int lies = 0;         // found
   // Frames that equal the last one, of which nothing is requested; in which the device kept pixels, or a server did.
   int unchanged = 0, device_kept = 0, server_kept = 0;
+  int by_effect = 0, lit = 0;                  // frames shared so, and those with a server's light
   bool far_from_best = false;                  // at the end, frames take far longer than with the best split
   int struck[platform::kLinkFaultCount] = {};  // faults drawn, in sessions where all struck
   double worst_calm = 0, worst_disturbed = 0;  // frame time relative to the device's alone

@@ -69,6 +69,35 @@ TEST_CASE("faults_simulated_sessions_end_well") {
   CHECK(far <= 1 + static_cast<int>(count / 1000));
 }
 
+// Goal: over links with latency, too, every frame is complete and in time, whichever way it is shared; one by effect
+// has the device's own light or a server's, and a server that sends none keeps no other from being asked. Method:
+// sessions as above of 200 frames, round trips of 5 to 500 ms, shared by rows, by effect, or by what is faster; servers
+// that send no light, that of other frames, or rows of an earlier request when asked for light alone. An eighth as
+// many.
+TEST_CASE("faults_far_sessions_end_well") {
+  bool single = std::getenv("POCKETRAY_FAULT_SEED") && !std::getenv("POCKETRAY_FAULT_SESSIONS");
+  std::uint64_t seed = number_of("POCKETRAY_FAULT_SEED", 1);
+  std::uint64_t count = single ? 1 : (number_of("POCKETRAY_FAULT_SESSIONS", effort(240)) + 7) / 8;
+  int failures = 0, frames = 0, by_effect = 0, lit = 0, losses = 0, late = 0;
+  for (std::uint64_t i = 0; i < count; ++i, ++seed) {
+    const FaultPlan plan = draw_far_faults(seed);
+    if (single) std::printf("%s\n", plan_text(plan).c_str());
+    SessionResult r = run_fault_session(plan);
+    frames += r.frames, by_effect += r.by_effect, lit += r.lit, losses += r.losses, late += r.frames_late;
+    CHECK((!r.failure.empty() || r.frames >= kFarFrames));
+    if (r.failure.empty()) continue;
+    if (++failures <= 20)
+      std::printf("POCKETRAY_FAULT_SEED=%llu, far: %s\n  %s\n", static_cast<unsigned long long>(seed),
+                  r.failure.c_str(), plan_text(plan).c_str());
+  }
+  std::printf(
+      "%llu far sessions: %d frames, %d by effect, %d with a server's light; %d servers lost; %d frames took more than "
+      "1.05 times the device's time alone\n",
+      static_cast<unsigned long long>(count), frames, by_effect, lit, losses, late);
+  CHECK(failures == 0);
+  CHECK((single || (by_effect > frames / 10 && lit > frames / 20)));
+}
+
 // Goal: sessions that once failed now pass. Method: their seeds.
 // 60173: three servers, a fixed share and few rows; the device waited for rows when it could no longer render them
 // within its time alone. 952, 4566, 22422, hostile: a chunk with one missing row also replaced rows of others; a liar's

@@ -16,8 +16,10 @@ namespace {
 
 constexpr int kStreams = 128;
 constexpr std::uint64_t kNeighbourStepNs = 10 * kMs;
-constexpr double kStuckTimes = 10;  // in units of the device's time for a frame,
-constexpr int kStuckReads = 1000;   // or reads between two waits: enough to test a flood
+constexpr double kStuckTimes = 10;           // in units of the device's time for a frame,
+constexpr std::uint32_t kVirtualLights = 4;  // few, as every pixel of every server traces rays to them
+constexpr double kOwnLightPart = 0.6;        // of a pixel's time, without them
+constexpr int kStuckReads = 1000;            // or reads between two waits: enough to test a flood
 
 // The device's renderer and reference pictures, shared by all sessions.
 struct Device {
@@ -27,13 +29,16 @@ struct Device {
 };
 
 Device& device_of(const FaultPlan& plan) {
-  static std::map<std::uint32_t, Device> devices;
-  Device& device = devices[plan.width << 16 | plan.height];
+  static std::map<std::pair<std::uint32_t, bool>, Device> devices;
+  const bool is_lit = plan.split != SplitKind::rows;
+  Device& device = devices[{plan.width << 16 | plan.height, is_lit}];
   if (!device.renderer) {
     device.built = build_builtin(kFaultScene);
     Settings settings;
     settings.width = plan.width, settings.height = plan.height;
     settings.memory_bytes = 8u << 20;
+    if (is_lit)
+      settings.indirect = indirect_choice(Effect::instant_radiosity), settings.virtual_lights = kVirtualLights;
     device.whole = make_renderer(device.built->scene, settings);
     settings.coherence = CoherenceMode::automatic;
     device.renderer = make_renderer(device.built->scene, settings);
@@ -44,12 +49,20 @@ Device& device_of(const FaultPlan& plan) {
 
 }  // namespace
 
-const std::vector<std::uint8_t>& device_picture(const FaultPlan& plan, int second) {
+const std::vector<std::uint8_t>& device_picture(const FaultPlan& plan, int second, Lighting lighting) {
   Device& device = device_of(plan);
   bool small = plan.format == WireFormat::rgb565;
-  std::vector<std::uint8_t>& pixels = device.pictures[second * 4 + small * 2 + plan.dither];
+  const int kind = static_cast<int>(lighting);
+  std::vector<std::uint8_t>& pixels = device.pictures[kind * 64 + second * 4 + small * 2 + plan.dither];
   if (!pixels.empty()) return pixels;
   Renderer* renderer = &device.whole->renderer;
+  if (plan.split != SplitKind::rows) {
+    Settings settings = renderer->settings;
+    settings.indirect = lighting == Lighting::asked ? indirect_choice(Effect::instant_radiosity)
+                        : lighting == Lighting::own ? own_indirect(renderer->scene)
+                                                    : IndirectChoice::none;
+    REQUIRE(change_settings(renderer, settings).ok);
+  }
   REQUIRE(render_frame(renderer, kFaultSeconds[second]).ok);
   int width = static_cast<int>(plan.width), height = static_cast<int>(plan.height);
   int line_bytes = width * static_cast<int>(pixel_bytes(plan.format));
@@ -89,7 +102,7 @@ void start(std::uint32_t i) {
     return;
   }
   ServerOptions o;
-  o.client_memory_bytes = kSessionBytesMin;
+  o.client_memory_bytes = plan.split == SplitKind::rows ? kSessionBytesMin : 2 * kSessionBytesMin;
   o.client_count_max = 4;
   o.pace.ns_per_pixel = plan.server_ns[i];
   o.row_costs = plan.row_costs;
@@ -230,7 +243,8 @@ platform::LinkResult read_world(platform::Link* link, int stream, void* bytes, s
   if (cost > 0) platform::kNullLink.poll(link, nullptr, 0, cost);
   Outside outside;
   double frame_ns = static_cast<double>(world->elapsed() - world->frame_begin_ns);
-  bool takes_long = world->plan.has_scene && frame_ns > kStuckTimes * static_cast<double>(world->local_ns);
+  bool takes_long = world->plan.has_scene &&
+                    frame_ns > kStuckTimes * static_cast<double>(world->local_ns) + light_wait_max_ns(world->plan);
   world->stuck = world->stuck || ++world->reads > kStuckReads || takes_long;
   for (Place& place : world->places)
     if (place.hostile && !place.frozen && !world->stuck) step_hostile_server(place.hostile.get());
@@ -294,10 +308,14 @@ void open_fault_world(const FaultPlan& given, FaultWorld* w) {
     w->neighbours[i].random.state = plan.seed + static_cast<std::uint64_t>(i);
   }
   w->link->backend = &kWorldLink;
-  const Settings& settings = device_renderer(plan)->settings;
+  Settings settings = device_renderer(plan)->settings;
+  if (plan.split != SplitKind::rows) settings.indirect = indirect_choice(Effect::instant_radiosity);
+  REQUIRE(change_settings(device_renderer(plan), settings).ok);  // the session before has ended with any
   ClientOptions o;
   o.has_scene = plan.has_scene;
   o.coarse_after_ns = plan.coarse_first ? 1 : 0;
+  o.light.split = plan.split, o.light.indirect = settings.indirect, o.light.wait_ns = plan.light_wait_ns;
+  if (plan.split != SplitKind::rows) o.own_light_pixel_ns = kOwnLightPart * plan.device_ns;
   o.format = plan.format, o.dither = plan.dither, o.device_share = plan.device_share;
   o.check_count = plan.check_count;
   o.pace.ns_per_pixel = plan.device_ns;
@@ -307,7 +325,7 @@ void open_fault_world(const FaultPlan& given, FaultWorld* w) {
   o.log = [](void*, const char* line) { world->log.push_back(line); };
   for (std::uint32_t row = 0; row < plan.height; ++row)
     w->local_ns += paced_ns(pace_of_rows(o.pace, o.row_costs, row, row + 1), plan.width, 0);
-  w->client_memory.resize(client_need(settings, o.format, plan.server_count) + kArenaAlignment);
+  w->client_memory.resize(client_need(settings, o.format, plan.server_count, o.light) + kArenaAlignment);
   Arena arena = make_arena("client", w->client_memory.data(), w->client_memory.size());
   Status status =
       make_client(o, settings, builtin_hash(kFaultScene), w->link, addresses, plan.server_count, &arena, &w->client);

@@ -41,8 +41,8 @@ struct FaultWorld {
   std::vector<std::string> log;
 
   int frame = 0;
-  std::uint64_t frame_begin_ns = 0;
-  std::uint64_t local_ns = 0;      // frame time of the device alone
+  std::uint64_t frame_begin_ns = 0, lit_ns = 0;  // lit_ns: when the last frame with a server's light was complete
+  std::uint64_t local_ns = 0;                    // frame time of the device alone
   std::uint64_t lost_ns = 0;       // time in the frame that the device cannot know of, as its clock was set back
   std::uint64_t set_back_ns = 0;   // so far
   int reads = 0;                   // by the device since it last waited
@@ -57,12 +57,20 @@ struct FaultWorld {
   std::uint64_t elapsed() const { return platform::null_link_record(link).elapsed_ns; }
 };
 
+// How long the device may wait for light in a frame: for an overture, and until each server has been given up.
+inline double light_wait_max_ns(const FaultPlan& plan) {
+  if (plan.light_wait_ns == 0) return 0;
+  return plan.server_count * 2.0 * static_cast<double>(kSilenceNs) + 40 * static_cast<double>(plan.line.latency_ns);
+}
+
 // Opens the world, with the device not yet connected. Only one world at a time.
 void open_fault_world(const FaultPlan& plan, FaultWorld* world);
 void close_fault_world(FaultWorld* world);
-// The device's renderer for pictures of that size, and its reference pixels for a given time.
+// The device's renderer for pictures of that size, and its reference pixels for a given time: with the light that is
+// asked for, its own indirect light, or none. They are the same where frames are only shared by rows.
+enum class Lighting : std::uint8_t { asked, own, direct };
 Renderer* device_renderer(const FaultPlan& plan);
-const std::vector<std::uint8_t>& device_picture(const FaultPlan& plan, int second);
+const std::vector<std::uint8_t>& device_picture(const FaultPlan& plan, int second, Lighting = Lighting::asked);
 
 // Applies planned events: those before the frame, or those due within it.
 void look_for_events(bool before);

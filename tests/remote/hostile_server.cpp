@@ -6,6 +6,7 @@
 
 #include "platform/null/net/null_link.h"
 #include "support/scripted_client.h"
+#include "wire/light_coder.h"
 
 namespace pocketray {
 namespace {
@@ -98,6 +99,22 @@ void say_coarse(HostileServer* server, Connection* c) {
   say(c, message);
 }
 
+// Of the request, or of one of the last.
+void say_light(HostileServer* server, Connection* c, std::uint32_t frame) {
+  const FrameRequest& q = c->request;
+  const std::uint32_t columns = light_map_side(q.settings.width, q.light_pitch),
+                      rows = light_map_side(q.settings.height, q.light_pitch);
+  std::vector<Vec3> light(std::size_t(columns) * rows, Vec3{0.5f, 0.25f, 0.125f});
+  std::vector<std::uint8_t> bytes(light_bytes_max(light.size()));
+  Message message;
+  message.type = MessageType::light_map;
+  message.light_map.frame = frame, message.light_map.light_ps = price(server);
+  message.light_map.price = stated_price(server);
+  const std::size_t byte_count = encode_light(light.data(), columns, rows, 0, bytes.data());
+  message.light_map.bytes = {bytes.data(), static_cast<std::uint32_t>(byte_count)};
+  say(c, message);
+}
+
 void say_error(HostileServer* server, Connection* c) {
   Message message;
   message.type = MessageType::error;
@@ -144,7 +161,7 @@ std::uint64_t chunk_ns(const HostileServer& server, const Connection& c, std::ui
 void plan_chunk(HostileServer* server, Connection* c) {
   const FrameRequest& q = c->request;
   c->due_ns = ~std::uint64_t(0);
-  if (!has_rows(c->due)) return;
+  if (!has_rows(c->due) || c->holds_rows) return;
   c->chunk_rows = std::min(next_chunk_rows(q, c->due), std::min(32u, q.settings.height));
   c->due_ns = net.now_ns(server->link) + chunk_ns(*server, *c, c->chunk_rows);
 }
@@ -165,11 +182,21 @@ void send_due_rows(HostileServer* server, Connection* c) {
 }
 
 void take_request(HostileServer* server, Connection* c, const FrameRequest& request, bool is_change) {
+  const RowSequence held = c->due;
   if (is_change)
     take_change(request, &c->request);
   else
     c->request = request;
-  c->due = first_rows(c->request);
+  const FrameRequest& q = c->request;
+  const Malice malice = server->settings.malice;
+  c->holds_rows = malice == Malice::held_rows && server->random.below(2) != 0;
+  if (malice == Malice::held_rows && q.row_begin == q.row_end && has_rows(held))
+    say_rows(server, c, q.frame, held.row_end - 1, held.row_end, false);
+  if (malice == Malice::other_light && q.light_pitch > 0)
+    say_light(server, c, q.frame - static_cast<std::uint32_t>(server->random.below(3)));
+  const bool has_light = malice != Malice::no_light && (malice != Malice::other_light || server->random.below(2));
+  if (q.light_pitch > 0 && has_light) say_light(server, c, q.frame);
+  c->due = first_rows(q);
   if (c->request.coarse_first && server->settings.malice == Malice::coarse_pictures) say_coarse(server, c);
   plan_chunk(server, c);
 }
@@ -226,7 +253,8 @@ void answer(HostileServer* server, Connection* c, const Message& message) {
       c->ready = true;
       return take_request(server, c, message.frame_request, message.type == MessageType::frame_change);
     case MessageType::cancel:
-      c->due = RowSequence(), c->due_ns = ~std::uint64_t(0);
+      if (!c->holds_rows) c->due = RowSequence();
+      c->due_ns = ~std::uint64_t(0);
       return;
     default:
       return;

@@ -24,8 +24,9 @@ struct HostileSettings {
 struct HostileConnection {
   int stream;
   std::vector<std::uint8_t> in, out;
-  bool ready = false;    // has greeted and received a request
-  bool silent = false;   // stalls for good
+  bool ready = false;   // has greeted and received a request
+  bool silent = false;  // stalls for good
+  bool holds_rows = false;
   int patience = 0;      // for flaps: number of messages it still answers
   FrameRequest request;  // the last
   RowSequence due;       // remain to be sent

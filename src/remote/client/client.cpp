@@ -125,6 +125,7 @@ void cancel_rest(Client* client, bool given_up) {
     if (!given_up && server->frame.rows_come == 0 && server->phase == ServerPhase::ready)
       observe_start(&client->model, i, static_cast<double>(client_now_ns(*client) - server->frame.asked_ns));
     server->frame.open = false;
+    server->light_asked_ns = 0;  // it may be on its way
     bool sent = send_message(&server->messages, message);
     sent ? flush_server(client, server) : lose_server(client, server, "it stopped reading");
   }

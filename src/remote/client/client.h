@@ -44,9 +44,9 @@ struct ClientOptions {
   // meanwhile. A server that fails is retried after half a second, twice that and so on: soon after a short fault, and
   // rarely enough to cost nothing where it lasts.
   std::uint64_t connect_timeout_ns = 3'000'000'000;
-  std::uint64_t silence_timeout_ns = 3'000'000'000;  // without an answer; half a message is none
-  std::uint64_t prepare_timeout_ns =
-      30'000'000'000;  // the same until the first rows, as the server builds its scene first
+  std::uint64_t silence_timeout_ns = 3'000'000'000;   // without an answer; half a message is none
+  std::uint64_t prepare_timeout_ns = 30'000'000'000;  // the same until the first rows, as the server builds its scene
+                                                      // first; and for light, even if it answers pings
   std::uint64_t retry_ns_min = 500'000'000, retry_ns_max = 30'000'000'000;
   void (*log)(void* context, const char* line) = nullptr;  // one line when a server is lost or back
   void* log_context = nullptr;
@@ -86,6 +86,7 @@ struct ServerFrame {
 struct RemoteServer {
   platform::LinkAddress address;
   ServerPhase phase = ServerPhase::waiting;
+  std::uint64_t phase_ns = 0;  // when that of its overture began
   MessageStream messages;
   RowDecoder* decoder = nullptr;
   platform::LinkTimer timer;                           // of the phase: next attempt, or when the server counts as lost
@@ -110,6 +111,8 @@ struct RemoteServer {
   std::uint64_t late_at_ping = 0;    // their number when the ping was sent
   std::uint32_t coarse_due = 0;      // coarse pictures that may still come,
   std::uint32_t light_due = 0;       // and light maps
+  std::uint64_t light_asked_ns = 0;  // when the light of the request under way was asked for; 0: none is to come
+  std::uint32_t light_missed = 0;    // connections since the last map that ended before one came
   bool more = false;                 // unread input remains: one poll handles at most a frame's worth
   bool unanswered = false;           // no answer since rows were requested; new requests do not extend the time
   std::uint32_t chunk_count = 0;     // received on this connection

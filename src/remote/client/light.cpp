@@ -9,6 +9,9 @@
 namespace pocketray {
 namespace {
 
+// Chosen: as long as a server may take for any other answer (ClientOptions::silence_timeout_ns).
+constexpr std::uint64_t kUnlitNs = 3'000'000'000;
+
 bool same_view(const FrameRequest& a, const FrameRequest& b) {
   const Camera &p = a.camera, &q = b.camera;
   return a.seconds == b.seconds && p.eye == q.eye && p.target == q.target && p.up == q.up &&
@@ -16,14 +19,17 @@ bool same_view(const FrameRequest& a, const FrameRequest& b) {
          same_quality(a.settings, b.settings);
 }
 
-// A server that can render the light, and would take least; null: none. One that has passed its overture as far as the
-// measurement of its link needs no rows for that.
+// A server that can render the light, has let the device wait in vain least often, and would take least; null: none.
+// One that has passed its overture as far as the measurement of its link needs no rows for that.
 RemoteServer* best_server(Client* client) {
   RemoteServer* best = nullptr;
   for (std::uint32_t i = 0; i < client->server_count; ++i) {
     RemoteServer* server = &client->servers[i];
     if (server->lied || server->phase < ServerPhase::probing) continue;
-    if (!best || server->price < best->price) best = server;
+    const bool is_better =
+        best && (server->light_missed != best->light_missed ? server->light_missed < best->light_missed
+                                                            : server->price < best->price);
+    if (!best || is_better) best = server;
   }
   return best;
 }
@@ -33,7 +39,7 @@ bool is_one_joining(const Client& client) {
   if (client.light.map_request.frame > 0 || client.request.frame > 1) return false;
   return std::any_of(client.servers, client.servers + client.server_count, [](const RemoteServer& server) {
     const bool waits = server.phase == ServerPhase::waiting;
-    return !server.lied && server.phase < ServerPhase::probing && !(waits && server.told);
+    return !server.lied && server.light_missed == 0 && server.phase < ServerPhase::probing && !(waits && server.told);
   });
 }
 
@@ -45,8 +51,6 @@ void request_light(Client* client, RemoteServer* server) {
   q->row_begin = q->row_end = 0;
   q->run_count = 0, q->coarse_first = false;
   want_light_with(client, server, q);
-  server->late_rows += server->due_rows;
-  server->due_rows = 0;
   send_request(client, server, &message);
 }
 
@@ -111,15 +115,37 @@ void log_unfit(Client* client, const char* reason) {
   client->options.log(client->options.log_context, line);
 }
 
+// Tells once that a frame has other light than was asked for: at once where the frame waits for it, otherwise after a
+// while, as the first map comes after the first frames.
+void tell_unlit(Client* client) {
+  ClientLight* l = &client->light;
+  const FrameShare& share = client->share;
+  const std::uint64_t now = client_now_ns(*client);
+  if (share.has_light || share.device_rows == 0) {
+    l->unlit_ns = 0;
+    return;
+  }
+  if (l->unlit_ns == 0) l->unlit_ns = now;
+  const bool is_told = client->options.light.wait_ns > 0 || now - l->unlit_ns >= kUnlitNs;
+  if (l->told_unlit || !is_told || !client->options.log) return;
+  l->told_unlit = true;
+  char line[200];
+  std::snprintf(
+      line, sizeof line,
+      "frame %u has the device's own indirect light instead of that of --indirect %s: no server sent it in time",
+      share.frame, kIndirectNames.names[static_cast<int>(client->options.light.indirect)]);
+  client->options.log(client->options.log_context, line);
+}
+
 // Whether the frame under way is to have a map of its own.
 bool wants_map(const Client& client) {
   const ClientLight& l = client.light;
   if (!l.by_effect || l.asked.frame > 0) return false;
   const std::uint32_t frame = client.request.frame;
-  if (l.last_asked == frame) return false;  // its server was lost
   const bool has_map = l.map_request.frame > 0;
   if (has_map && same_view(l.map_request, client.request)) return false;
-  return !has_map || l.rests || frame - l.last_asked >= client.options.light.every;
+  // One that this frame has asked for may have been lost with its server.
+  return !has_map || l.rests || frame == l.last_asked || frame - l.last_asked >= client.options.light.every;
 }
 
 // With what its cost is worth, where the user weighs that.
@@ -146,9 +172,10 @@ void predict_ways(Client* client) {
 // Both ways in turn, or the one that is predicted to be faster.
 bool is_effect_wanted(Client* client) {
   ClientLight* l = &client->light;
-  // Servers come into use by rows.
-  const bool probes = std::any_of(client->servers, client->servers + client->server_count, [](const RemoteServer& s) {
-    return s.phase == ServerPhase::measuring || s.phase == ServerPhase::probing;
+  // Servers come into use by rows; one whose rows never come in time does not keep the others from sending light.
+  const std::uint64_t now = client_now_ns(*client), limit = client->options.silence_timeout_ns;
+  const bool probes = std::any_of(client->servers, client->servers + client->server_count, [&](const RemoteServer& s) {
+    return s.phase == ServerPhase::measuring || (s.phase == ServerPhase::probing && now - s.phase_ns < limit);
   });
   if (probes || !best_server(client)) return false;
   predict_ways(client);
@@ -245,9 +272,11 @@ void ask_for_light(Client* client) {
 
 void take_light(Client* client, RemoteServer* server, LightMapMessage message) {
   ClientLight* l = &client->light;
-  if (server->light_due == 0) return lose_server(client, server, kUnasked);
   message.frame = frame_of(message.frame, server->asked.frame);
-  server->light_due = message.frame == server->asked.frame ? 0 : server->light_due - 1;
+  const bool is_last = message.frame == server->asked.frame;
+  if (server->light_due <= (is_last ? 0u : awaits_light(*server))) return lose_server(client, server, kUnasked);
+  server->light_due = is_last ? 0 : server->light_due - 1;
+  if (is_last) server->light_asked_ns = 0;
   server->price = message.price;
   if (server->light_due == 0) server->late_rows = server->late_at_ping = 0;
   const std::uint32_t index = index_of(*client, server), bytes = light_map_prefix_bytes() + message.bytes.count;
@@ -259,6 +288,7 @@ void take_light(Client* client, RemoteServer* server, LightMapMessage message) {
                     l->light[1 - l->newest].data))
     return lose_server(client, server, "it sent light that cannot be decoded");
   l->has_come = true;
+  server->light_missed = 0;
   const double took_ns = static_cast<double>(client_now_ns(*client) - l->asked_ns);
   l->times.server_ns = 1e-3 * message.light_ps * light_count(l->grid) * price_ratio(message.price);
   l->times.transfer_ns = std::max(0.0, took_ns - l->times.server_ns);
@@ -280,9 +310,12 @@ bool light_rows(Renderer* renderer, Client* client) {
   if (l->traced_ns == 0) ask_for_light(client), l->traced_ns = now;
   take_map(renderer, client);
   const LightOptions& o = client->options.light;
-  const bool is_due = l->rows_lit == 0 && (l->asked.frame == client->request.frame || is_one_joining(*client));
-  const std::uint64_t wait_ns = o.wait_ns > 0 ? o.wait_ns : static_cast<std::uint64_t>(client->device_ns);
-  if (is_due && now - l->traced_ns < wait_ns) return false;
+  const bool is_asked = l->asked.frame == client->request.frame;
+  const bool is_due = l->rows_lit == 0 && (is_asked || is_one_joining(*client));
+  const bool is_patient = o.wait_ns > 0 && !(is_asked && client->servers[l->asked_server].light_missed > 0);
+  const std::uint64_t since = is_patient && is_asked ? std::max(l->traced_ns, l->asked_ns) : l->traced_ns;
+  const std::uint64_t wait_ns = is_patient ? o.wait_ns : static_cast<std::uint64_t>(client->device_ns);
+  if (is_due && now - since < wait_ns) return false;
   const bool has_all = has_all_rows(*client);
   if (l->map_request.frame == 0) {
     l->is_done = has_all;
@@ -310,6 +343,7 @@ void end_light_frame(Client* client) {
   ClientLight* l = &client->light;
   if (l->grid.pitch == 0) return;
   const FrameShare& share = client->share;
+  if (l->by_effect) tell_unlit(client);
   const bool chooses = client->options.light.split == SplitKind::automatic;
   if (chooses && (client->joined || l->by_effect) && !client->unchanged)
     observe_choice(&l->choice, l->by_effect, client->frames_with_servers > 1 ? share.predicted_ns : 0,

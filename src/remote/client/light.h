@@ -17,8 +17,10 @@ struct LightOptions {
   SplitKind split = SplitKind::rows;                    // rows: no light is asked for, and no memory taken
   IndirectChoice indirect = IndirectChoice::automatic;  // that the servers render
   std::uint32_t pitch = kLightPitch;                    // kLightPitchMin … kLightPitchMax
-  std::uint32_t every = 1;    // frames of a moving view to a map; one that rests gets its own in any case
-  std::uint64_t wait_ns = 0;  // for the frame's map, once its rows are traced; 0: as long as tracing took
+  std::uint32_t every = 1;  // frames of a moving view to a map; one that rests gets its own in any case
+  // For the frame's map, once its rows are traced and it is asked for; 0: as long as tracing took. For that of a server
+  // whose last one never came, as long in any case.
+  std::uint64_t wait_ns = 0;
 };
 
 struct ClientLight {
@@ -48,6 +50,8 @@ struct ClientLight {
   double rows_part = 1;         // of the pixels, what the device had to trace of its rows when it last shared by rows
   FrameRequest last;            // the last frame's
   const char* unfit = nullptr;  // why frames cannot be shared so, as logged
+  std::uint64_t unlit_ns = 0;   // since when frames have been without a server's light; 0: the last one had it
+  bool told_unlit = false;      // that has been logged
 };
 
 std::size_t light_need(const Settings& settings, const LightOptions& options);

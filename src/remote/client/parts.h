@@ -63,7 +63,7 @@ void ask_for_rows(Client* client, RemoteServer* server, std::uint32_t row_begin,
 // The same, including finished rows.
 void request_rows(Client* client, RemoteServer* server, std::uint32_t row_begin, std::uint32_t row_end,
                   const SplitProblem* problem = nullptr);
-// Sends a request as it is, as a change of the last one if it is one.
+// Sends a request as it is, as a change of the last one if it is one. From then on its rows and light are due.
 void send_request(Client* client, RemoteServer* server, Message* message);
 // Gives servers that became ready during the frame a share of the rest, once no server is worth waiting for.
 void let_join(Client* client);
@@ -150,6 +150,8 @@ std::uint32_t mapper_of_frame(Client* client);
 bool want_light_with(Client* client, RemoteServer* server, FrameRequest* request);
 // Asks that server, if it has no rows to send.
 void ask_for_light(Client* client);
+// Whether the light of its last request is still to come. It comes before the rows.
+inline bool awaits_light(const RemoteServer& server) { return server.light_due > 0 && server.asked.light_pitch > 0; }
 void take_light(Client* client, RemoteServer* server, LightMapMessage message);
 // The server will not send the light that it was asked for, or too late.
 void forget_light_of(Client* client, std::uint32_t server);

@@ -12,7 +12,7 @@ namespace {
 
 // Chosen: seldom enough to cost nothing, often enough that a server returns within a second. `make faults` tests that a
 // flapping server is retried ever less often.
-constexpr std::uint64_t kIdlePingNs = 500'000'000;  // between pings of a server without rows
+constexpr std::uint64_t kIdlePingNs = 500'000'000;  // between pings of a server that is asked for nothing
 // A connection useful for this many times the wait before it was sound, so the next attempt comes soon.
 constexpr std::uint64_t kLastingWaits = 10;
 // Per server and poll, and no more rows than a picture has. Derived: about twice the messages of 240 rows in the
@@ -41,12 +41,12 @@ void connect_server(Client* client, RemoteServer* server) {
 void greet_server(Client* client, RemoteServer* server) {
   CHECK(server->phase == ServerPhase::connecting);
   restart_row_decoder(server->decoder);
-  server->coarse_due = server->light_due = 0;
+  server->coarse_due = server->light_due = 0, server->light_asked_ns = 0;
   server->pings_answered = server->pings_missed = 0, server->ping_id = 0, server->round_trip_ns = 0;
   server->chunk_count = 0, server->unanswered = false;
   server->quiet_until_ns = server->anew_ns = 0;
   server->asked = FrameRequest();
-  server->due = RowSequence(), server->due_rows = 0, server->late_rows = 0;
+  server->due = RowSequence(), server->due_rows = 0, server->late_rows = server->late_at_ping = 0;
   server->frame = ServerFrame();
   enter(client, server, ServerPhase::greeting);
   Message message;
@@ -79,14 +79,19 @@ void take_scene_entry(Client* client, RemoteServer* server, const SceneEntry& en
   send_ping(client, server, 0);
 }
 
+// True if they are the next rows of the last request.
+bool is_next(const RemoteServer& server, const RowChunk& chunk) {
+  const std::uint32_t end = std::uint32_t(chunk.row_begin) + chunk.row_count;
+  return chunk.frame == server.asked.frame && end == server.due.row_end && chunk.row_begin >= server.due.row_begin &&
+         chunk.row_count <= server.due_rows;
+}
+
 // True if the server owes these rows: the next of the last request, in its order, or rows in flight when that replaced
 // an earlier request. No row is owed twice, which bounds what a server can make the device decode. A chunk of the last
 // request ends the earlier ones.
 bool takes_owed_rows(RemoteServer* server, const RowChunk& chunk) {
-  std::uint32_t end = std::uint32_t(chunk.row_begin) + chunk.row_count;
-  if (chunk.frame == server->asked.frame && end == server->due.row_end && chunk.row_begin >= server->due.row_begin) {
+  if (is_next(*server, chunk)) {
     pass_rows(server->asked, chunk.row_count, &server->due);
-    CHECK_LE(chunk.row_count, server->due_rows);
     server->due_rows -= chunk.row_count;
     server->late_rows = server->late_at_ping = 0;
     server->coarse_due = 0;  // it would have come before
@@ -110,6 +115,8 @@ void take_chunk(Client* client, RemoteServer* server, RowChunk chunk) {
   const bool states_price = chunk.price != 0;
   if (!states_price) chunk.price = server->price;
   server->price = chunk.price;
+  if (awaits_light(*server) && is_next(*server, chunk))
+    return lose_server(client, server, "it sent rows without their light");
   if (!takes_owed_rows(server, chunk)) return lose_server(client, server, "it sent unrequested rows");
   if (chunk.bytes.count > encoded_bytes_max(server->decoder->state.shape, chunk.row_count))
     return lose_server(client, server, "it sent more bytes than its rows can take");
@@ -166,6 +173,16 @@ bool is_awaited(const Client& client, const RemoteServer& server) {
   return server.phase != ServerPhase::waiting;
 }
 
+// Whether light has been overdue for long enough to give the server up, however well it answers pings. A device that
+// did not look for long, as one that was asleep, gives it half of the time again.
+bool is_light_overdue(Client* client, RemoteServer* server) {
+  const std::uint64_t limit = client->options.prepare_timeout_ns, now = client_now_ns(*client);
+  if (server->light_asked_ns == 0 || now - server->light_asked_ns < limit || server->more) return false;
+  if (client->unwatched_ns < limit / 2) return true;
+  server->light_asked_ns = now - limit / 2;
+  return false;
+}
+
 // Reads at most a frame's worth, so that no server can stall the device.
 void read_server(Client* client, RemoteServer* server) {
   platform::Error error;
@@ -197,6 +214,7 @@ void read_server(Client* client, RemoteServer* server) {
 
 void enter(Client* client, RemoteServer* server, ServerPhase phase) {
   server->phase = phase;
+  server->phase_ns = client_now_ns(*client);
   server->timer = platform::link_timer(client_now_ns(*client), silence_limit_ns(*client, *server));
 }
 
@@ -254,6 +272,8 @@ void lose_server(Client* client, RemoteServer* server, const char* reason) {
   std::uint32_t i = index_of(*client, server);
   client->model.servers[i].connected = false;
   server->frame.open = false;
+  if (server->light_asked_ns > 0) ++server->light_missed;
+  server->light_asked_ns = 0;
   forget_light_of(client, i);
   server->phase = ServerPhase::waiting;
   std::uint64_t now = client_now_ns(*client);
@@ -305,9 +325,10 @@ void advance_server(Client* client, RemoteServer* server) {
   }
   read_server(client, server);
   if (server->phase == ServerPhase::waiting) return;
+  if (is_light_overdue(client, server)) return lose_server(client, server, "it did not send its light in time");
   if (!is_awaited(*client, *server)) {
     server->timer = platform::link_timer(now, silence_limit_ns(*client, *server));
-    if (server->phase == ServerPhase::ready && now >= server->ping_due_ns) {
+    if (server->phase >= ServerPhase::probing && now >= server->ping_due_ns) {
       server->ping_due_ns = now + kIdlePingNs;
       send_ping(client, server, 0);
     }

@@ -137,7 +137,6 @@ void request_rows(Client* client, RemoteServer* server, std::uint32_t row_begin,
   message.frame_request.chunk_rows = static_cast<std::uint16_t>(std::min(chunk_rows, client->settings.height));
   message.frame_request.coding =
       row_coding(server->ns_per_byte, code_threshold(*client, *server), client->options.near_lossless);
-  server->late_rows += server->due_rows;
   forget_light_of(client, index);
   want_light_with(client, server, &message.frame_request);
   if (message.frame_request.coarse_first) ++server->coarse_due, client->coarse_asked = true;
@@ -147,14 +146,16 @@ void request_rows(Client* client, RemoteServer* server, std::uint32_t row_begin,
   server->frame.row_begin = row_begin, server->frame.row_end = row_end;
   server->frame.asked_ns = client_now_ns(*client), server->frame.bytes = bytes, server->frame.row_bytes = row_bytes;
   server->frame.open = true;
-  server->due = first_rows(message.frame_request), server->due_rows = row_end - row_begin;
   send_request(client, server, &message);
 }
 
 void send_request(Client* client, RemoteServer* server, Message* message) {
   const bool like_the_last = server->asked.frame > 0 && is_change(message->frame_request, server->asked);
   message->type = like_the_last ? MessageType::frame_change : MessageType::frame_request;
-  server->asked = message->frame_request;
+  const FrameRequest& q = server->asked = message->frame_request;
+  server->late_rows += server->due_rows;
+  server->due = first_rows(q), server->due_rows = q.row_end - q.row_begin;
+  server->light_asked_ns = q.light_pitch > 0 ? client_now_ns(*client) : 0;
   if (!send_message(&server->messages, *message)) return lose_server(client, server, "it stopped reading");
   if (!server->unanswered)
     server->timer = platform::link_timer(client_now_ns(*client), silence_limit_ns(*client, *server));

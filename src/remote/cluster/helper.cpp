@@ -54,7 +54,8 @@ Status ClusterHelper::take_scene(TeamReader* reader) {
   ClusterScene scene;
   if (!read_plain(reader, &scene)) return failure("rank 0 sent a part of a message: its program is another one");
   const std::size_t begin = scene_bytes_.size(), count = reader->left();
-  CHECK(scene.part.offset == begin && count <= scene.byte_count - begin);
+  if (scene.part.offset != begin || begin >= scene.byte_count || count > scene.byte_count - begin)
+    return failure("rank 0 sent another part of a scene than was asked for: its program is another one");
   scene_bytes_.resize(begin + count);
   CHECK(reader->take(scene_bytes_.data() + begin, count));
   if (scene_bytes_.size() < scene.byte_count) return want({scene.part.scene, scene_bytes_.size()}), success();
@@ -79,7 +80,10 @@ Status ClusterHelper::session_of(const ClusterJob& job, Session** session) {
 }
 
 Status ClusterHelper::prepare_job(Session* session, const ClusterPrepare& asked) {
-  CHECK_GT(asked.own_exposure, 0);
+  Message message;
+  message.type = MessageType::frame_request, message.frame_request = asked.request;
+  if (!(asked.own_exposure > 0) || !can_encode(message))
+    return failure("rank 0 sent a request that no client can make");
   const FrameRequest& request = asked.request;
   const Settings& settings = request.settings;
   drop_job(session);
@@ -127,7 +131,9 @@ Status ClusterHelper::trace(TeamReader* reader) {
   if (!read_plain(reader, &traced.asked)) return failure("rank 0 sent a part of a message: its program is another one");
   RETURN_IF_ERROR(session_of(traced.asked.job, &session));
   const RowPiece& piece = traced.asked.piece;
-  if (!has_job(*session) || session->job_number != traced.asked.job.number || piece.row_end > session->shape.height)
+  const bool is_part = piece.row_begin < piece.row_end && piece.row_end <= session->shape.height &&
+                       piece.column_begin < piece.column_end && piece.column_end <= session->shape.width;
+  if (!has_job(*session) || session->job_number != traced.asked.job.number || !is_part)
     return failure("rank 0 asked for rows of a frame that was not prepared");
   seal_memory();
   const std::uint64_t start = clock_ns();

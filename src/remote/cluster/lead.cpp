@@ -20,10 +20,13 @@ constexpr std::uint64_t kSceneBytes = 1 << 20;
 // Chosen: pieces take milliseconds.
 constexpr std::uint64_t kPatienceNs = 2'000'000'000;
 
+bool has_part(const SceneStore& store, const ClusterWant& want) {
+  return want.scene < store.scenes.size() &&
+         want.offset < store.scenes[static_cast<std::size_t>(want.scene)].byte_count;
+}
+
 void send_scene(const Team& team, std::uint32_t rank, const SceneStore& store, const ClusterWant& want) {
-  CHECK_LT(want.scene, store.scenes.size());
   const StoredScene& stored = store.scenes[static_cast<std::size_t>(want.scene)];
-  CHECK_LT(want.offset, stored.byte_count);
   ClusterScene scene = {want, store.scenes.size(), stored.byte_count, stored.hash, {}};
   std::memcpy(scene.name, stored.name, sizeof scene.name);
   TeamWriter text;
@@ -71,16 +74,17 @@ Status ClusterLead::welcome(const SceneStore& store) {
     TeamReader reader(message);
     if (message.bytes[0] == kWantScene) {
       ClusterWant want;
-      if (!read_plain(&reader, &want)) return failure("rank %u: its program is not that of rank 0", message.from);
+      if (!read_plain(&reader, &want) || !has_part(store, want))
+        return failure("rank %u: its program is not that of rank 0", message.from);
       send_scene(team_, message.from, store, want);
       continue;
     }
     const std::string identity = reader.text();
     rank->threads = static_cast<std::uint32_t>(reader.number());
-    if (message.bytes[0] != kReady || !reader.ok() || identity != identity_ || rank->threads == 0)
+    const bool is_first = message.bytes[0] == kReady && !rank->is_ready;
+    if (!is_first || !reader.ok() || identity != identity_ || rank->threads == 0)
       return failure("rank %u: its program or options are not those of rank 0: start all ranks with the same command",
                      message.from);
-    CHECK(!rank->is_ready);
     rank->is_ready = true;
     ++ready_count;
   }
