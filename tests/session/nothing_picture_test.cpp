@@ -38,7 +38,8 @@ std::string explanation(GeneratedScene* s, const std::vector<std::string>& names
   auto test = make_renderer(s->scene, settings);
   REQUIRE(render_frame(&test->renderer, 0).ok);
   char text[kBlackTextBytes] = "x";
-  CHECK(explain_picture(test->renderer, names, text) == (text[0] != 0));
+  const bool is_explained = explain_picture(test->renderer, names, text);
+  CHECK(is_explained == (text[0] != 0));
   return text;
 }
 
