@@ -155,6 +155,7 @@ void add_bake_command(Command program, int* exit_status) {
                    "solve the light between diffuse surfaces and store it; costs seconds to minutes here and little on "
                    "the device. It is solved for the pose at time 0");
   add_environment_option(command, &options->environment);
+  add_reading_options(command, &options->model.reading);
   std::vector<std::string> names;
   std::string help;
   for (const AccelInfo* info : kAccelList) {

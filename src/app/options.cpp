@@ -118,6 +118,7 @@ void add_scene_options(Command command, CommonOptions* o, bool scene_required) {
       .one_of(accels)
       .capture_default_str();
   add_camera(command, o);
+  add_reading_options(command, &o->reading);
 }
 
 void add_view_options(Command command, CommonOptions* o) {
@@ -125,6 +126,19 @@ void add_view_options(Command command, CommonOptions* o) {
   add_effects(command, o);
   add_threads(command, o);
   add_camera(command, o);
+  add_reading_options(command, &o->reading);
+}
+
+void add_reading_options(Command command, ReadingChoice* choice) {
+#ifdef POCKETRAY_HAVE_IMPORT
+  command.add_option("--up", choice->up, "the axis that points up in a PLY, STL, OBJ or OFF model: y or z")
+      .one_of({"y", "z"})
+      .default_str("z for PLY and STL, y for the others");
+  command.add_flag("--strict", choice->strict,
+                   "refuse a model with vertices that are not finite instead of leaving out their faces");
+#else
+  (void)command, (void)choice;
+#endif
 }
 
 Option add_environment_option(Command command, std::string* name) {

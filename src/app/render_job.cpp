@@ -114,7 +114,7 @@ Status render_file(Renderer* renderer, const RenderJob& job, std::uint32_t frame
   RETURN_IF_ERROR(render_one(renderer, job, frame, files, complete));
   if (!*complete) return success();
   files->trace_ms += renderer->timings.trace_ms;
-  if (files->written == 0 && shows_radiance(job)) explain_black(*renderer, job.source->material_names, files->black);
+  if (files->written == 0 && shows_radiance(job)) explain_picture(*renderer, job.source->material_names, files->black);
   if (job.asked.aov != Aov::none && !stores_values(job.asked.kind)) {
     files->shown = color_aov(job.asked.aov, box_to_write(job.asked.picture, renderer->settings), renderer);
     files->picture.legend = job.options.no_legend ? nullptr : &files->shown.legend;

@@ -4,8 +4,8 @@
 #include "app/render_options.h"
 #include "budget/budget.h"
 #include "session/aov_picture.h"
-#include "session/black_picture.h"
 #include "session/camera_control.h"
+#include "session/nothing_picture.h"
 #include "session/progress.h"
 #include "session/resume.h"
 
@@ -34,7 +34,7 @@ struct RenderedFiles {
   AovPicture shown;
   std::uint32_t written = 0;
   double trace_ms = 0;               // of all frames
-  char black[kBlackTextBytes] = "";  // why the first picture is black; empty: it is not
+  char black[kBlackTextBytes] = "";  // why the first picture is black or shows nothing; empty: neither
 };
 
 // Renders a frame and writes it to its file, or adds it to the animation. An interrupt leaves *complete false and no

@@ -14,12 +14,14 @@
 #include "import/assimp_parts.h"
 #include "import/import_error.h"
 #include "import/normals.h"
+#include "import/polygon.h"
+#include "import/upright.h"
 
 namespace pocketray {
 namespace {
 
 // Formats that assimp reads well; glTF, OBJ and PLY have their own readers here.
-const char* const kEndings[] = {"stl", "fbx", "dae", "3ds",  "off", "x",   "3mf", "blend", "lwo",
+const char* const kEndings[] = {"stl", "fbx", "dae", "3ds",  "off", "x",   "3mf", "lwo",
                                 "ac",  "ase", "b3d", "ms3d", "md2", "md3", "smd", "x3d"};
 
 // A file in memory. Some of assimp's readers loop forever at the end of a truncated file; this stops them.
@@ -86,10 +88,12 @@ struct AssimpReader {
   SceneBuilder* builder;
   std::vector<std::uint32_t> materials;  // assimp index → scene index
   bool own_normals;                      // use the file's
+  Transform upright;
 };
 
 MeshData convert(const AssimpReader& reader, const aiMesh& source) {
   MeshData mesh;
+  mesh.name = std::string("mesh '") + source.mName.C_Str() + "'";
   std::size_t count = source.mNumVertices;
   require_bytes(*reader.builder, count, 64, "the geometry");
   require_bytes(*reader.builder, source.mNumFaces, 12, "the geometry");
@@ -103,21 +107,25 @@ MeshData convert(const AssimpReader& reader, const aiMesh& source) {
     mesh.positions.push_back({p.x, p.y, p.z});
     if (source.HasNormals() && reader.own_normals) {
       const aiVector3D& n = source.mNormals[i];
-      mesh.normals.push_back(normalize(Vec3{n.x, n.y, n.z}));
+      const Vec3 normal = normalize(Vec3{n.x, n.y, n.z});
+      mesh.normals.push_back(is_finite(normal) ? normal : Vec3{0, 0, 0});
     }
     if (textured && source.HasTextureCoords(0)) {
       const aiVector3D& t = source.mTextureCoords[0][i];
-      mesh.uvs.push_back({t.x, 1 - t.y});
+      mesh.uvs.push_back(is_coordinate({t.x, t.y, 0}) ? Vec2{t.x, 1 - t.y} : Vec2{0, 0});
     }
     if (source.HasVertexColors(0)) mesh.colors.push_back(assimp_color(source.mColors[0][i]));
   }
-  // Triangulates as a fan: assimp's own triangulation aborts on faces without corners.
+  // assimp's own triangulation aborts on faces without corners.
+  std::vector<std::uint32_t> corners;
   for (unsigned f = 0; f < source.mNumFaces; ++f) {
     const aiFace& face = source.mFaces[f];
     require_bytes(*reader.builder, mesh.indices.size() + 3 * static_cast<std::uint64_t>(face.mNumIndices), 4,
                   "the faces");
-    for (unsigned k = 2; k < face.mNumIndices; ++k)
-      mesh.indices.insert(mesh.indices.end(), {face.mIndices[0], face.mIndices[k - 1], face.mIndices[k]});
+    corners.assign(face.mIndices, face.mIndices + face.mNumIndices);
+    if (std::any_of(corners.begin(), corners.end(), [&](std::uint32_t v) { return v >= count; }))
+      fail_import("a face uses a vertex that does not exist; export the file again");
+    append_polygon(corners, &mesh, reader.builder);
   }
   return mesh;
 }
@@ -136,7 +144,7 @@ void append_nodes(AssimpReader* reader, std::vector<MeshData>* meshes) {
     std::uint32_t parent;  // part
   };
   std::vector<Visit> stack = {
-      {reader->scene->mRootNode, transform_of(reader->scene->mRootNode->mTransformation), kNone}};
+      {reader->scene->mRootNode, reader->upright * transform_of(reader->scene->mRootNode->mTransformation), kNone}};
   while (!stack.empty()) {
     Visit visit = stack.back();
     stack.pop_back();
@@ -175,17 +183,22 @@ void import_assimp(const std::string& path, const std::string& ending, const Byt
       new FilesBeside(path, builder->options.byte_count_max, &builder->files));  // the importer owns it
   importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
   bool own_normals = ending != "stl";
-  const aiScene* scene = importer.ReadFile(path, aiProcess_ValidateDataStructure);
+  // An STL file is one mesh for each of its solids, which may be empty, and has nothing else to validate.
+  const bool is_stl = ending == "stl";
+  const aiScene* scene = importer.ReadFile(path, is_stl ? 0u : unsigned{aiProcess_ValidateDataStructure});
   if (scene && scene->mRootNode) {
-    check_assimp_numbers(*scene, own_normals);  // vertices still hold the file's numbers
-    scene = importer.ApplyPostProcessing(aiProcess_JoinIdenticalVertices | aiProcess_SortByPType);
+    check_assimp_numbers(*scene, own_normals, builder->options.strict);  // vertices still hold the file's numbers
+    scene =
+        importer.ApplyPostProcessing(aiProcess_JoinIdenticalVertices | (is_stl ? 0u : unsigned{aiProcess_SortByPType}));
   }
   if (!scene || !scene->mRootNode)
     fail_import("%.300s (as assimp reports); export the file again", importer.GetErrorString());
   if (scene->HasAnimations()) note_unused(builder, "animation (use glTF)");
 
-  AssimpReader reader = {scene, builder, {}, own_normals};
   bool bare = ending == "stl" || ending == "off";  // no materials; assimp invents a shiny one
+  AssimpReader reader = {scene, builder, {}, own_normals, {}};
+  if (bare || builder->options.up != UpAxis::of_format)
+    reader.upright = upright(builder, ending == "stl" ? UpAxis::z : UpAxis::y, "STL");
   for (unsigned i = 0; i < scene->mNumMaterials; ++i)
     reader.materials.push_back(bare ? add_default_material(builder)
                                     : add_assimp_material(builder, path, *scene, *scene->mMaterials[i]));
@@ -193,7 +206,6 @@ void import_assimp(const std::string& path, const std::string& ending, const Byt
   for (unsigned i = 0; i < scene->mNumMeshes; ++i) {
     const aiMesh& source = *scene->mMeshes[i];
     MeshData mesh = convert(reader, source);
-    mesh.name = std::string("mesh '") + source.mName.C_Str() + "'";
     tidy_mesh(&mesh);
     if (mesh.normals.empty()) smooth_normals(&mesh, builder->options.crease_angle);
     meshes.push_back(std::move(mesh));

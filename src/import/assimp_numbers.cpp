@@ -25,14 +25,14 @@ void require(const aiVector3D& v, float limit, const char* kind, const char* nam
   require(&v.x, 3, limit, kind, name, what);
 }
 
-void check_mesh(const aiMesh& mesh, bool own_normals) {
+void check_mesh(const aiMesh& mesh, bool own_normals, bool strict) {
   auto check = [&](const float* values, unsigned count, unsigned vertex, float limit, const char* what) {
     for (unsigned i = 0; i < count; ++i)
       if (!(std::fabs(values[i]) <= limit))
         fail_import("mesh '%.60s': the %s of vertex %u is not finite or beyond %g; fix it or export the file again",
                     mesh.mName.C_Str(), what, vertex, static_cast<double>(limit));
   };
-  for (unsigned v = 0; v < mesh.mNumVertices; ++v) {
+  for (unsigned v = 0; strict && v < mesh.mNumVertices; ++v) {
     if (mesh.HasPositions()) check(&mesh.mVertices[v].x, 3, v, kCoordinateMax, "position");
     if (mesh.HasNormals() && own_normals) check(&mesh.mNormals[v].x, 3, v, kFloatMax, "normal");
     if (mesh.HasTextureCoords(0)) check(&mesh.mTextureCoords[0][v].x, 2, v, kCoordinateMax, "texture coordinate");
@@ -82,8 +82,8 @@ void check_camera(const aiCamera& camera) {
 
 }  // namespace
 
-void check_assimp_numbers(const aiScene& scene, bool own_normals) {
-  for (unsigned i = 0; i < scene.mNumMeshes; ++i) check_mesh(*scene.mMeshes[i], own_normals);
+void check_assimp_numbers(const aiScene& scene, bool own_normals, bool strict) {
+  for (unsigned i = 0; i < scene.mNumMeshes; ++i) check_mesh(*scene.mMeshes[i], own_normals, strict);
   for (unsigned i = 0; i < scene.mNumMaterials; ++i) check_material(*scene.mMaterials[i]);
   for (unsigned i = 0; i < scene.mNumLights; ++i) check_light(*scene.mLights[i]);
   for (unsigned i = 0; i < scene.mNumCameras; ++i) check_camera(*scene.mCameras[i]);

@@ -51,6 +51,7 @@ void import_any(const std::string& path, const ImportOptions& options, ImportedS
   bool gltf = is_gltf(ending, bytes);
   if (!gltf && ending != "obj" && ending != "ply") {
     if (assimp_reads(ending)) return import_by_assimp(path, ending, bytes, options, result);
+    if (ending == "blend") fail_import("it is a Blender project; export it as glTF (File, Export, glTF 2.0)");
     if (ending == "pray") fail_import("it is baked already; bake the model it was made from");
     fail_import("no reader for '.%.20s' files; convert to one of: %s", ending.c_str(), import_formats().c_str());
   }
@@ -60,7 +61,7 @@ void import_any(const std::string& path, const ImportOptions& options, ImportedS
   if (gltf)
     import_gltf(path, std::move(bytes), &builder);
   else if (ending == "ply")
-    import_ply(bytes, &builder);
+    import_ply(path, bytes, &builder);
   else
     import_obj(path, std::move(bytes), &builder);
   finish_scene(&builder, path_stem(path), result);

@@ -12,10 +12,15 @@
 
 namespace pocketray {
 
+// The axis that points up in a file: Z in PLY and STL, as scanners and printers have it; Y in OBJ and OFF.
+enum class UpAxis { of_format, y, z };
+
 struct ImportOptions {
   std::uint32_t texture_side_max = 512;  // larger textures are halved until they fit
   bool mip_maps = true;                  // store smaller levels of textures
   float crease_angle = 40;               // degrees; meshes without normals are smoothed below it (glTF: flat)
+  bool strict = false;                   // refuse vertices that are not finite instead of leaving out their faces
+  UpAxis up = UpAxis::of_format;         // of formats that do not say: OBJ, PLY, STL, OFF
   std::uint64_t byte_count_max = std::uint64_t(1) << 30;  // refuses larger scenes
   std::uint32_t cpu_seconds_max = 120;                    // for formats read by assimp, which is stopped then
 };

@@ -5,7 +5,9 @@
 #include <numeric>
 #include <unordered_map>
 
+#include "base/check.h"
 #include "base/fmath.h"
+#include "import/obj_file.h"
 
 namespace pocketray {
 namespace {
@@ -18,6 +20,7 @@ constexpr double kSameNormal = 4e-7;
 struct Corner {
   Vec3d normal;  // of its triangle, unit or zero
   double angle;
+  std::uint32_t group;
 };
 
 // For each vertex, the first vertex at the same position.
@@ -43,15 +46,16 @@ std::vector<std::uint32_t> weld(const std::vector<Vec3>& positions) {
   return first;
 }
 
-std::vector<Corner> measure_corners(const MeshData& mesh) {
+std::vector<Corner> measure_corners(const MeshData& mesh, const std::vector<std::uint32_t>* groups) {
   std::vector<Corner> corners(mesh.indices.size());
   for (std::size_t t = 0; t + 2 < mesh.indices.size(); t += 3) {
     Vec3d p[3];
     for (int k = 0; k < 3; ++k) p[k] = to_double(mesh.positions[mesh.indices[t + static_cast<std::size_t>(k)]]);
+    const std::uint32_t group = groups ? (*groups)[t / 3] : kNoGroup;
     Vec3d normal = normalize(cross(normalize(p[1] - p[0]), normalize(p[2] - p[0])));
     for (int k = 0; k < 3; ++k) {
       Vec3d a = normalize(p[(k + 1) % 3] - p[k]), b = normalize(p[(k + 2) % 3] - p[k]);
-      corners[t + static_cast<std::size_t>(k)] = {normal, det_acos(dot(a, b))};
+      corners[t + static_cast<std::size_t>(k)] = {normal, det_acos(dot(a, b)), group};
     }
   }
   return corners;
@@ -61,10 +65,13 @@ std::vector<Corner> measure_corners(const MeshData& mesh) {
 Vec3d corner_normal(const std::vector<Corner>& corners, std::uint32_t self, const std::uint32_t* around,
                     std::size_t count, double cos_crease, bool* flat) {
   const Vec3d& own = corners[self].normal;
+  const std::uint32_t group = corners[self].group;
+  if (group == kFlatGroup) return own;
   Vec3d sum = {0, 0, 0};
   for (std::size_t i = 0; i < count; ++i) {
     const Corner& other = corners[around[i]];
-    if (count <= kValenceMax && dot(own, other.normal) < cos_crease) continue;
+    if (other.group != group) continue;
+    if (group == kNoGroup && count <= kValenceMax && dot(own, other.normal) < cos_crease) continue;
     sum += other.normal * other.angle;
     Vec3d d = other.normal - own;
     if (dot(d, d) > kSameNormal * kSameNormal && !is_zero(other.normal)) *flat = false;
@@ -108,9 +115,10 @@ void assign(MeshData* mesh, const std::vector<Vec3>& normals) {
 
 }  // namespace
 
-void smooth_normals(MeshData* mesh, float crease_degrees) {
+void smooth_normals(MeshData* mesh, float crease_degrees, const std::vector<std::uint32_t>* groups) {
+  CHECK(!groups || groups->size() == mesh->indices.size() / 3);
   std::vector<std::uint32_t> first = weld(mesh->positions);
-  std::vector<Corner> corners = measure_corners(*mesh);
+  std::vector<Corner> corners = measure_corners(*mesh, groups);
   // Corners by position: counting sort.
   std::vector<std::uint32_t> begin(mesh->positions.size() + 1, 0), around(corners.size());
   for (std::uint32_t index : mesh->indices) ++begin[first[index] + 1];

@@ -8,6 +8,8 @@ namespace pocketray {
 // `crease_degrees` from the corner's own, weighted by angle [Thürmer & Wüthrich 1998]. Corners at equal positions count
 // as one, however they are indexed; vertices whose corners differ are duplicated. A mesh that is flat everywhere keeps
 // no normals.
-void smooth_normals(MeshData* mesh, float crease_degrees);
+// `groups`, one per triangle, are OBJ's smoothing groups (obj_file.h): triangles of one group are smoothed at any
+// angle, those of kFlatGroup not at all, and those of kNoGroup as above; none are smoothed with another group's.
+void smooth_normals(MeshData* mesh, float crease_degrees, const std::vector<std::uint32_t>* groups = nullptr);
 
 }  // namespace pocketray

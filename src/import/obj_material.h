@@ -1,14 +1,14 @@
 // MTL materials.
 #pragma once
-#include <tiny_obj_loader.h>
-
 #include <string>
 
+#include "import/mtl_file.h"
 #include "import/scene_builder.h"
 
 namespace pocketray {
 
-// Appends the material and returns its index. Its images lie beside the scene file; a missing one gives a remark.
-std::uint32_t add_obj_material(SceneBuilder* builder, const std::string& scene_path, const tinyobj::material_t& source);
+// Appends the material and returns its index. Its images lie beside its MTL file or the scene file; a missing one gives
+// a remark, and so does a material that would be invisible.
+std::uint32_t add_obj_material(SceneBuilder* builder, const std::string& scene_path, const MtlMaterial& source);
 
 }  // namespace pocketray

@@ -53,7 +53,7 @@ void tidy_obj_text(Bytes* bytes) {
     std::size_t line = out, joined = 0;  // lines
     while (at < text.size() && !is_line_end(text[at])) {
       std::size_t next = text[at] == '\\' && !comment ? line_end_size(text, at + 1) : 0;
-      bool continued = next > 0;
+      bool continued = next > 0 || (text[at] == '\\' && !comment && at + 1 == text.size());
       if (corners && (continued || is_blank(text[at]))) blank_slashes_before(&text, out, line);
       text[out++] = continued ? static_cast<std::uint8_t>(' ') : text[at];
       joined += continued;

@@ -5,7 +5,7 @@
 
 namespace pocketray {
 
-// Reads a .ply into the builder. Throws ImportError for a damaged file.
-void import_ply(const Bytes& bytes, SceneBuilder* builder);
+// Reads a .ply into the builder; its textures lie beside it.
+void import_ply(const std::string& path, const Bytes& bytes, SceneBuilder* builder);
 
 }  // namespace pocketray

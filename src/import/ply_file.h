@@ -29,7 +29,8 @@ struct PlyHeader {
   std::vector<PlyElement> elements;
   std::size_t end = 0;  // where the elements begin
   std::uint64_t vertex_count = 0;
-  bool names_texture = false;  // in a comment, as MeshLab does
+  std::vector<std::string> textures;  // named in comments, as MeshLab does
+  bool is_upright = false;            // Y is up: written by the programs of Stanford's scanning repository
 };
 
 // Throws an ImportError if the header is damaged or states more elements than the file can hold.

@@ -117,11 +117,15 @@ static std::uint64_t vertex_bytes(const SceneArrays& out, const MeshData& mesh) 
          (has_tangents ? (end - out.tangents.size()) * sizeof(PackedTangent) : 0);
 }
 
-static void require_coordinate(const Vec3& p, const MeshData& mesh) {
+static void require_coordinate(const Vec3& p, const std::string& mesh_name) {
   if (!is_coordinate(p))
-    fail_import("%.100s: a vertex is at (%g, %g, %g), not finite or beyond %g; scale the model down", mesh.name.c_str(),
+    fail_import("%.100s: a vertex is at (%g, %g, %g), not finite or beyond %g; scale the model down", mesh_name.c_str(),
                 static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z),
                 static_cast<double>(kCoordinateMax));
+}
+
+void require_finite(const Vec3& p, const std::string& mesh_name, const SceneBuilder& builder) {
+  if (builder.options.strict) require_coordinate(p, mesh_name);
 }
 
 void append_mesh(SceneBuilder* builder, const MeshData& mesh, const Transform& to_world) {
@@ -136,7 +140,7 @@ void append_mesh(SceneBuilder* builder, const MeshData& mesh, const Transform& t
   out.positions.reserve(begin + count > out.positions.capacity() ? std::max(begin + count, begin * 3 / 2) : 0);
   for (std::size_t i = 0; i < count; ++i) {
     Vec3 p = transform_point(to_world, mesh.positions[i]);
-    require_coordinate(p, mesh);
+    require_coordinate(p, mesh.name);
     out.positions.push_back(p);
   }
   std::vector<Vec3> normals(mesh.normals.size());
@@ -161,7 +165,7 @@ void append_moving_mesh(SceneBuilder* builder, const MeshData& mesh, const Trans
   SceneArrays& out = *builder->out;
   std::size_t count = mesh.positions.size();
   if (count == 0) return;
-  for (const Vec3& p : mesh.positions) require_coordinate(p, mesh);
+  for (const Vec3& p : mesh.positions) require_coordinate(p, mesh.name);
   charge_bytes(builder,
                count * (2 * sizeof(Vec3) + sizeof(SkinWeight)) +
                    (mesh.morph_positions.size() + mesh.morph_normals.size()) * sizeof(Vec3),
@@ -185,6 +189,9 @@ void append_moving_mesh(SceneBuilder* builder, const MeshData& mesh, const Trans
 static std::string warning_line(const SceneBuilder& builder) {
   std::string line;
   for (const std::string& item : builder.unused) line += (line.empty() ? "not used: " : ", ") + item;
+  if (builder.broken_face_count > 0)
+    line += (line.empty() ? "" : "; ") + std::to_string(builder.broken_face_count) +
+            " faces have vertices that are not finite or too far away and are left out (--strict refuses them)";
   for (const std::string& item : builder.remarks) line += (line.empty() ? "" : "; ") + item;
   return line;
 }

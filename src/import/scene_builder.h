@@ -77,8 +77,9 @@ struct SceneBuilder {
   std::vector<PartSource> parts;
   std::uint64_t bytes_charged = 0;
   FilesRead files;
-  std::vector<std::string> unused;   // contents of the file that are not used
-  std::vector<std::string> remarks;  // simplifications and repairs
+  std::uint64_t broken_face_count = 0;  // left out
+  std::vector<std::string> unused;      // contents of the file that are not used
+  std::vector<std::string> remarks;     // simplifications and repairs
 };
 
 // Counts bytes about to be allocated for `what`; throws beyond options.byte_count_max.
@@ -118,6 +119,9 @@ inline bool is_textured(const ClearCoat& coat) {
   return coat.strength_texture.texture != kNone || coat.roughness_texture.texture != kNone ||
          coat.normal.texture != kNone;
 }
+
+// With options.strict, throws unless the vertex may be part of a triangle, naming the mesh.
+void require_finite(const Vec3& p, const std::string& mesh_name, const SceneBuilder& builder);
 
 // True if a vertex may be part of a triangle (HARDCASES row 8).
 bool is_coordinate(const Vec3& p);

@@ -29,6 +29,20 @@ double enclosed_volume(const Scene& scene, const Vec3& middle) {
   return volume;
 }
 
+// Whether a shell that encloses its middle holds nothing: neither light nor a surface that is turned away from there,
+// as every piece of furniture has. `volume`: the enclosed one.
+bool holds_nothing(const Scene& scene, const Vec3& middle, double volume) {
+  constexpr double kShareMax = 1e-5;  // chosen: of a room's volume, what lies between its middle and the back of a book
+  if (scene.lights.count) return false;
+  double turned_away = 0;
+  for (const Triangle& t : scene.triangles) {
+    if (!is_zero(scene.materials[t.material()].emission)) return false;
+    const Corners k = corners(scene, t, middle);
+    turned_away += std::max(static_cast<double>(dot(k.a, cross(k.b, k.c))) / 6, 0.0);
+  }
+  return turned_away <= kShareMax * std::fabs(volume);
+}
+
 // The solid angle of all triangles that face a point, as if each were small: more than all directions where surfaces
 // surround the point, next to nothing inside a solid.
 float facing_solid_angle(const Scene& scene, const Vec3& from) {
@@ -135,7 +149,8 @@ Room find_room(const Scene& scene, const Box& bounds) {
   if (is_empty(bounds)) return room;
   const Vec3 size = extent(bounds);
   const double box_volume = static_cast<double>(size.x) * static_cast<double>(size.y) * static_cast<double>(size.z);
-  const bool encloses = -enclosed_volume(scene, center(bounds)) > 0.5 * box_volume;
+  const double volume = enclosed_volume(scene, center(bounds));
+  const bool encloses = -volume > 0.5 * box_volume;
   room.has_thick_walls = !encloses && box_volume > 0 && has_walls_around(scene, bounds);
   room.is_room = encloses || room.has_thick_walls;
   if (!encloses) return room;
@@ -143,6 +158,8 @@ Room find_room(const Scene& scene, const Box& bounds) {
   // Less than 0.3 of one, chosen, is a door or a window.
   const Vec3d area = shown_area(scene, bounds);
   const double side = length(area), box_side = static_cast<double>(half_area(bounds)) / 3;
+  // A closed shell around nothing is a body whose winding is reversed.
+  if (side < 1e-3 * box_side && holds_nothing(scene, center(bounds), volume)) return Room();
   if (side > 0.3 * box_side)
     room.opening = {static_cast<float>(area.x / side), static_cast<float>(area.y / side),
                     static_cast<float>(area.z / side)};

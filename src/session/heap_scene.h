@@ -25,6 +25,7 @@ struct ModelOptions {
   bool mip_maps = true;
   float crease_angle = 40;
   bool studio = true;  // for models that call for one
+  ReadingChoice reading;
 };
 
 // Makes a built-in scene or imports a model.

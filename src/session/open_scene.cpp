@@ -86,6 +86,7 @@ Status open_scene(const CommonOptions& o, const OpenHooks& hooks, OpenScene* ope
   RETURN_IF_ERROR(parse_look(o, &renderer->look));
   renderer->camera_index = o.camera_index;
   renderer->accel_info = find_accel(o.accel);
+  opened->source.reading = o.reading;
   SceneStorage storage;
   RETURN_IF_ERROR(hooks.load(o.scene, renderer, &opened->source, &storage));
   RETURN_IF_ERROR(set_environment_if_requested(o.environment, renderer, &opened->source, &storage));

@@ -10,6 +10,7 @@
 #include "platform/devices/device_list.h"
 #include "scene/scene.h"
 #include "session/output.h"
+#include "session/source.h"
 
 namespace pocketray {
 
@@ -35,6 +36,7 @@ struct CommonOptions {
   std::string background, light = "key", fov;  // empty: the scene's
   std::string environment;                     // import/environment.h; empty: the scene's
   std::string focus;                           // a part of the model; empty: all of it
+  ReadingChoice reading;
   std::uint32_t threads = 0, camera_index = 0;
   // What the command writes beside --json. None of it may replace a file that the scene is read from.
   std::vector<NamedFile> outputs;

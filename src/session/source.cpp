@@ -46,7 +46,9 @@ Status load_baked(const std::string& name, Renderer* renderer, SceneSource* sour
 Status load_imported(const std::string& name, Renderer* renderer, SceneSource* source, SceneStorage* storage) {
   ImportedScene imported;
   const bool with_studio = renderer->look.environment == EnvironmentChoice::as_scene && !renderer->look.has_background;
-  RETURN_IF_ERROR(import_model(name, ImportOptions(), &imported, with_studio));
+  ImportOptions options;
+  apply(source->reading, &options);
+  RETURN_IF_ERROR(import_model(name, options, &imported, with_studio));
   source->warning = imported.warning;
   source->material_names = imported.material_names;
   source->parts = imported.parts;
@@ -83,6 +85,12 @@ Status add_studio(ImportedScene* imported) {
 }
 
 }  // namespace
+
+void apply(const ReadingChoice& choice, ImportOptions* options) {
+  CHECK(options != nullptr);
+  options->up = choice.up == "z" ? UpAxis::z : choice.up == "y" ? UpAxis::y : UpAxis::of_format;
+  options->strict = choice.strict;
+}
 
 Status import_model(const std::string& name, const ImportOptions& options, ImportedScene* imported, bool with_studio) {
   RETURN_IF_ERROR(import_scene(name, options, imported));

@@ -15,7 +15,14 @@ namespace pocketray {
 
 using NamedBoxes = std::vector<std::pair<std::string, Box>>;
 
+// How a model is read; see ImportOptions.
+struct ReadingChoice {
+  std::string up;  // y or z; empty: as its format has it
+  bool strict = false;
+};
+
 struct SceneSource {
+  ReadingChoice reading;                // set before loading
   const std::uint8_t* baked = nullptr;  // the .pray file, or what a model became, that the scene is a view of; null: a
   std::size_t baked_bytes = 0;          // built-in scene
   ContentHash environment;              // of what --environment made of the scene; zero: it has its own
@@ -32,6 +39,8 @@ void* take_block(std::size_t bytes);
 void give_block_back(void* block);
 
 #ifdef POCKETRAY_HAVE_IMPORT
+void apply(const ReadingChoice& choice, ImportOptions* options);
+
 // Imports a model and decides its light. A model with lights gets its exposure measured, since files' units vary beyond
 // a display's range; others ask for the default lights, and get a studio `with_studio` if they call for it.
 Status import_model(const std::string& name, const ImportOptions& options, ImportedScene* imported,

@@ -8,7 +8,7 @@
 #include "base/printable.h"
 #include "base/seal.h"
 #include "platform/file.h"
-#include "session/black_picture.h"
+#include "session/nothing_picture.h"
 #include "session/interrupt.h"
 #include "session/picture.h"
 #include "viewer/steps.h"
@@ -285,10 +285,10 @@ Status take_screen(const ViewOptions& options, int width, int height, Viewer* vi
                  quarter_turned(*viewer) ? format.width : format.height);
 }
 
-// Prints a warning if the first finished picture is black.
+// Prints a warning if the first finished picture is black or shows nothing.
 void explain_first_picture(Viewer* viewer, const Renderer& renderer) {
   char text[kBlackTextBytes];
-  if (explain_black(renderer, viewer->material_names, text)) tell(viewer, text);
+  if (explain_picture(renderer, viewer->material_names, text)) tell(viewer, text);
 }
 
 }  // namespace

@@ -108,8 +108,27 @@ std::vector<Model> models() {
       {"square.obj", "obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvn 0 0 1\nf 1/1/1 2//1 3/1 -1\nl 1 2\n"},
       {"forms.obj", "obj",
        "\xEF\xBB\xBFv 0 0 0\nv 1 0 \\\n0\nv 1 1 0\r\nv 0 1 0\rf 1// 2// 3//\nf 1/1/ 2/ \\\r\n3//\n#\\\nf 1 2 4\\"},
+      {"concave.obj", "obj",
+       "mtllib a b.mtl\nv 0 0 0\nv 2 2 0\nv 4 0 0\nv 4 4 0\nv 2 2 0\nv 0 4 nan\nv 1e-3 1 0 1 .5 0\nusemtl a b\ns 1\nf "
+       "1 2 3 4 "
+       "5 7\ns off\nf 1 3 5 7 2 4 # odd\nf 6 1 2\ng a b\no c\np 1\n"},
+      {"tangle.obj", "obj",
+       "v 0 0 0\nv 3 1 0\nv 1 3 0\nv 1 0 0\nv 3 3 0\nv 0 2 0\nf 1 2 3 4 5 6 1 3 5 2 4 6\nf 1 4 1 4\nf 1 2 2 3 3 3 4\n"},
       {"wide.obj", "obj", std::string("\xFF\xFEv\0 \0", 6)},
       {"shining.mtl", "mtl", "newmtl m\nKd 1 0 0\nKs 1 1 1\nNs 20\nd 0.5\nmap_Kd a.png\nPc 0.5\nPcr 0.25\n"},
+      {"maps.mtl", "mtl",
+       "newmtl m\nillum 4\nKd .5\nKs spectral a.rfl 1\nd -halo .5\nTr 1\nmap_Kd -s 2 2 -o .5 -mm 0 1 -clamp on -blendu "
+       "off "
+       "a b.png\nmap_d -imfchan l -texres 8 C:\\m.png\nbump -bm 1 b.png\nnewmtl a b # c\nxyz 1\n"},
+      {"colors.ply", "ply",
+       "ply\nformat ascii 1.0\ncomment TextureFile a.png\nelement vertex 4\nproperty float x\nproperty float "
+       "y\nproperty "
+       "float z\nproperty float s\nproperty float t\nelement face 2\nproperty list uchar int vertex_indices\nproperty "
+       "list "
+       "uchar float texcoord\nproperty uchar texnumber\nproperty uchar red\nproperty uchar green\nproperty uchar "
+       "blue\nend_header\n0 0 0 0 0\n2 0 nan 1 0\n1 1 0 1 1\n0 2 0 0 1\n4 0 1 2 3 8 0 0 1 0 1 1 0 1 0 255 0 0\n3 0 2 3 "
+       "0 1 0 "
+       "255 0\n"},
       {"ascii.ply", "ply", ply("ascii", "uchar", false)},
       {"binary.ply", "ply", ply("binary_little_endian", "uchar", true)},
       {"strips.ply", "ply",
@@ -141,7 +160,6 @@ std::vector<Model> models() {
        "point=\"0 0 0 1 0 0 0 1 0\"/></IndexedFaceSet></Shape></Scene></X3D>"},
       // For the rest only their magic bytes; the fuzzer continues from there.
       {"head.fbx", "fbx", std::string("Kaydara FBX Binary  \0\x1A\0\xE8\x1C\0\0", 27) + std::string(64, '\0')},
-      {"head.blend", "blend", "BLENDER-v279REND" + std::string(32, '\0')},
       {"head.lwo", "lwo", std::string("FORM\0\0\0\x14LWO2PNTS\0\0\0\x0C", 20) + std::string(12, '\0')},
       {"head.b3d", "b3d", std::string("BB3D\x0C\0\0\0\1\0\0\0TEXS\0\0\0\0", 20)},
       {"head.ms3d", "ms3d", std::string("MS3D000000\4\0\0\0\0\0", 16) + std::string(16, '\0')},

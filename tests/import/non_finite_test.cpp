@@ -1,5 +1,6 @@
 // HARDCASES row 8 at import: a number in a scene file that is invalid, not finite, beyond float or beyond the limit of
-// coordinates is refused with one line that names its place. Method, throughout: a valid file, then the same with one
+// coordinates is refused with one line that names its place. OBJ, PLY and assimp's formats refuse vertices only with
+// `strict`; without, they leave out the faces. Method, throughout: a valid file, then the same with one
 // number replaced.
 #include <cmath>
 #include <cstring>
@@ -22,7 +23,9 @@ std::string replaced(std::string text, const std::string& from, const std::strin
 }
 
 void check_refused(const std::string& path, const std::string& place) {
-  std::string error = load_error(path);
+  ImportOptions options;
+  options.strict = true;
+  std::string error = load_error(path, options);
   CHECK_MESSAGE(contains(error, path + ":"), error);
   CHECK_MESSAGE(contains(error, place), error);
   CHECK(error.find('\n') == std::string::npos);
@@ -68,6 +71,33 @@ TEST_CASE("hard_08_obj_numbers_that_are_not_finite_are_refused_by_line") {
     load(folder.write("a.obj", replaced(obj, "v 1 0 0", std::string("v ") + number + " 0 0")));
   }
   load(folder.write("a.obj", replaced(obj, "vn 0 0 1e0", "vn 0 0 1e30")));  // a direction: HARDCASES row 30
+}
+
+// Goal: without `strict`, the faces of a vertex that is not finite are left out and counted, and the others are shown;
+// a word that is no number is still refused. Method: two triangles and a polygon, one vertex spoilt at a time.
+TEST_CASE("hard_08_faces_with_vertices_that_are_not_finite_are_left_out") {
+  TemporaryFolder folder;
+  const std::string obj =
+      "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 5 0 0\nv 6 0 0\nv 6 1 0\nv 5 1 0\nvn 0 0 1\nf 1 2 3\nf 4//1 5//1 6//1 7//1\n";
+  const std::string ply =
+      "ply\nformat ascii 1.0\nelement vertex 7\nproperty float x\nproperty float y\nproperty float z\nelement face 2\n"
+      "property list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n5 0 0\n6 0 0\n6 1 0\n5 1 0\n3 0 1 2\n"
+      "4 3 4 5 6\n";
+  for (const char* number : {"nan", "-NaN", "inf", "1e39", "2e18"})
+    for (const auto& file : {std::make_pair("a.obj", obj), std::make_pair("a.ply", ply)}) {
+      CAPTURE(std::string(number));
+      ImportedScene few = load(folder.write(file.first, replaced(file.second, "6 1 0", std::string("6 1 ") + number)));
+      CHECK(few.scene.triangles.count == 1);
+      CHECK(contains(few.warning, "1 faces have vertices that are not finite"));
+      for (const Vec3& p : few.scene.positions) CHECK(is_finite(p));
+      CHECK(load(folder.write(file.first, replaced(file.second, "0 1 0", std::string(number) + " 1 0")))
+                .scene.triangles.count == 2);
+    }
+  const ImportedScene normal = load(folder.write("a.obj", replaced(obj, "vn 0 0 1", "vn 0 nan 1")));
+  CHECK(normal.scene.triangles.count == 3);
+  for (const Vec3& n : normal.scene.normals) CHECK(is_finite(n));
+  CHECK(contains(load_error(folder.write("a.obj", replaced(obj, "6 1 0", "6 1 x"))), "line 6: 'x'"));
+  CHECK(contains(load_error(folder.write("a.obj", "v nan 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")), "no triangles"));
 }
 
 // Goal: MTL lines, and the numbers of its texture options.

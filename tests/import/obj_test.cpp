@@ -45,11 +45,18 @@ TEST_CASE("obj_illumination_models_map_to_our_lobes") {
     CHECK(mirror.mirror == Vec3{0.9f, 0.8f, 0.7f});
     CHECK(is_zero(mirror.specular));
   }
-  for (const char* illum : {"4", "6", "7", "9"}) {
+  for (const char* illum : {"6", "7"}) {
     Material glass = first(load_material(std::string("Tf 0.5 1 0.25\nNi 1.5\nillum ") + illum + "\n"));
     CHECK(glass.transmission == Vec3{0.5f, 1, 0.25f});
     CHECK(glass.ior == 1.5f);
     CHECK(glass.thin == 0);
+  }
+  for (const char* illum : {"4", "9"}) {  // as Maya writes them for opaque materials
+    Material opaque =
+        first(load_material(std::string("Kd 0.5 0.25 0.125\nKs 0.3 0.2 0.1\nNs 40\nTf 1 1 1\nillum ") + illum + "\n"));
+    CHECK((is_zero(opaque.transmission) && opaque.opacity == 1));
+    CHECK((opaque.diffuse == Vec3{0.5f, 0.25f, 0.125f} && opaque.exponent == 40));
+    CHECK(first(load_material(std::string("d 0.5\nillum ") + illum + "\n")).opacity == 0.5f);
   }
   CHECK(is_zero(first(load_material("Tf 1 1 1\nillum 2\n")).transmission));
   CHECK(first(load_material("illum 7\n")).transmission == Vec3{1, 1, 1});
@@ -113,7 +120,8 @@ TEST_CASE("obj_textures_and_their_options") {
   folder.write("color.tga", tga({255, 0, 0, 0, 255, 0}));
   folder.write("mask.tga", tga({0, 0, 0, 255, 255, 255}));
   folder.write("m.mtl",
-               "newmtl m\nmap_Kd -clamp on -o 0.25 0.125 0 -s 2 4 1 color.tga\nmap_d mask.tga\nmap_bump bump.png\n");
+               "newmtl m\nmap_Kd -clamp on -o 0.25 0.125 0 -s 2 4 1 color.tga\nmap_d -o 0.25 0.125 -s 2 4 "
+               "mask.tga\nmap_bump bump.png\n");
   ImportedScene imported =
       load(folder.write("a.obj", std::string("mtllib m.mtl\n") + kQuad + "usemtl m\nf 1/1 2/2 3/3 4/4\n"));
   const Scene& s = imported.scene;

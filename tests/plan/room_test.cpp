@@ -66,6 +66,38 @@ TEST_CASE("room_of_thin_or_thick_walls_is_seen_from_inside") {
   }
 }
 
+// Goal: a closed body whose winding is reversed is no room, and is seen from outside; with a table or a lamp in it, or
+// without a wall, it is a room. Method: a box and a ball turned inside out.
+TEST_CASE("room_is_no_body_of_reversed_winding") {
+  auto reversed = [](bool ball) {
+    auto s = std::make_unique<GeneratedScene>();
+    const std::uint32_t white = add_material(s.get(), {});
+    if (!ball) {
+      add_box(s.get(), {0, 0, 0}, {1, 1, 1}, white, true);
+      return s;
+    }
+    auto at = [](int along, int up) {
+      const float turn = static_cast<float>(along) * 0.2618f, height = static_cast<float>(up) * 0.2618f;
+      return Vec3{std::sin(height) * std::cos(turn), std::cos(height), std::sin(height) * std::sin(turn)};
+    };
+    for (int i = 0; i < 24; ++i)
+      for (int k = 0; k < 12; ++k) add_quad(s.get(), at(i, k + 1), at(i + 1, k + 1), at(i + 1, k), at(i, k), white);
+    return s;
+  };
+  for (bool ball : {false, true}) {
+    CAPTURE(ball);
+    auto s = reversed(ball);
+    CHECK_FALSE(is_room(s.get()));
+    const Box bounds = scene_bounds(s->scene);
+    CHECK_FALSE(is_within(camera_of(s->scene, 4.0f / 3).eye, bounds.low, bounds.high));
+    add_box(s.get(), {0.4f, 0.1f, 0.4f}, {0.6f, 0.2f, 0.6f}, 0);
+    CHECK(is_room(s.get()));
+    auto lit = reversed(ball);
+    lit->lights.push_back({});
+    CHECK(is_room(lit.get()));
+  }
+}
+
 // Goal: a room without a wall is looked into from there. Method: each wall of a box in turn.
 TEST_CASE("room_without_a_wall_is_seen_through_the_opening") {
   for (const Vec3& out : {Vec3{0, 0, 1}, Vec3{0, 0, -1}, Vec3{1, 0, 0}, Vec3{-1, 0, 0}}) {

@@ -1,0 +1,59 @@
+// Lines, words and numbers of OBJ and MTL texts. Numbers are read strictly, and damage is refused by line (HARDCASES
+// row 8).
+#pragma once
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "import/files.h"
+
+namespace pocketray {
+
+struct ObjWord {
+  const char *begin, *end;
+  std::string text() const { return std::string(begin, end); }
+  bool is(const char* text) const;
+};
+
+// A line without its comment: '#' begins one at the line's begin and after a blank, and ends words, but not names.
+class ObjLine {
+ public:
+  // `file` is named in errors; empty: the scene file itself.
+  ObjLine(const char* begin, const char* end, std::size_t number, const char* file);
+  bool next(ObjWord* word);
+  // What is left, without blanks at its ends; a name may have blanks inside.
+  std::string rest();
+  // The word as a number of at most `limit`; refuses any other.
+  float number(const ObjWord& word, float limit) const;
+  // The next `count` words as numbers; refuses other words, and a number that is not finite behind them. Returns how
+  // many there are.
+  int numbers(int count, float limit, float* values);
+  [[noreturn]] void refuse(const std::string& what) const;
+  std::size_t number() const { return number_; }
+
+ private:
+  const char *at_, *end_;
+  std::size_t number_;
+  const char* file_;
+};
+
+// True if the word is a decimal number, [+-]digits[.digits][e[+-]digits]; stores it, infinite if it is too large.
+bool read_number(const ObjWord& word, float* value);
+// True if the word says NaN, infinity or a number too large for a float.
+bool is_not_finite(const ObjWord& word);
+
+// Calls visit(ObjLine*) for each line. Lines end in LF, CR LF or CR.
+template <class Visit>
+void for_each_line(const Bytes& bytes, const char* file, Visit visit) {
+  const char* at = reinterpret_cast<const char*>(bytes.data());
+  const char* stop = at + bytes.size();
+  for (std::size_t number = 1; at < stop; ++number) {
+    const char* end = at;
+    while (end < stop && *end != '\n' && *end != '\r') ++end;
+    ObjLine line(at, end, number, file);
+    visit(&line);
+    at = end + (end + 1 < stop && end[0] == '\r' && end[1] == '\n' ? 2 : 1);
+  }
+}
+
+}  // namespace pocketray

@@ -1,0 +1,229 @@
+// Triangles of concave polygons (HARDCASES row 68).
+#include "import/polygon.h"
+
+#include <chrono>
+#include <map>
+#include <utility>
+
+#include "import/import_testing.h"
+#include "import/polygon_testing.h"
+#include "support/hard_case.h"
+
+using namespace pocketray;
+
+namespace {
+
+using Loop = std::vector<Vec2>;
+
+struct NamedLoop {
+  const char* name;
+  Loop loop;
+};
+const std::vector<NamedLoop>& loops() {
+  static const std::vector<NamedLoop> kLoops = {
+      {"C", {{-1, -1}, {1, -1}, {1, -.5f}, {-.5f, -.5f}, {-.5f, .5f}, {1, .5f}, {1, 1}, {-1, 1}}},
+      {"door", {{-1, 1}, {-1, -1}, {-.3f, -1}, {-.3f, .2f}, {.3f, .2f}, {.3f, -1}, {1, -1}, {1, 1}}},
+      {"collinear", {{0, 0}, {1, 0}, {2, 0}, {3, 0}, {3, 1}, {3, 3}, {2, 3}, {1, 3}, {0, 3}, {0, 2}, {0, 1}}},
+      {"triangle of many", {{0, 0}, {1, 0}, {2, 0}, {4, 0}, {3, 1}, {2, 2}, {1, 3}, {0, 4}, {0, 3}, {0, 1}}},
+      {"keyhole", {{0, 0}, {4, 0}, {4, 4}, {0, 4}, {0, 0}, {1, 1}, {1, 3}, {3, 3}, {3, 1}, {1, 1}}},
+      {"keyhole along a side",
+       {{0, 0}, {2, 0}, {2, 1}, {1, 2}, {2, 3}, {3, 2}, {2, 1}, {2, 0}, {4, 0}, {4, 4}, {0, 4}}},
+      {"twice", {{0, 0}, {2, 0}, {2, 0}, {2, 2}, {1, 1}, {1, 1}, {0, 2}, {0, 2}}},
+      {"touching itself", {{0, 0}, {2, 2}, {4, 0}, {4, 4}, {2, 2}, {0, 4}}},
+      {"touching its side", {{0, 0}, {4, 0}, {4, 4}, {2, 0}, {0, 4}}},
+      {"spike", {{0, 0}, {4, 0}, {4, 4}, {4, 6}, {4, 4}, {0, 4}}},
+      {"bow-tie", {{0, 0}, {2, 2}, {2, 0}, {0, 2}}},
+      {"pentagram", {{0, 1}, {.5878f, -.809f}, {-.9511f, .309f}, {.9511f, .309f}, {-.5878f, -.809f}}},
+      {"twice around", {{0, 0}, {4, 0}, {4, 4}, {0, 4}, {0, 0}, {4, 0}, {4, 4}, {0, 4}}},
+      {"overlapping sides", {{0, 0}, {3, 0}, {3, 1}, {2, 0}, {1, 0}, {1, 2}, {0, 2}}},
+      {"line", {{0, 0}, {1, 1}, {2, 2}, {1, 1}}},
+      {"comb", comb(20, false)},
+      {"comb across", comb(20, true)},
+      {"star", star(60, .1f, 1)},
+      {"spiral", spiral(60, 3)}};
+  return kLoops;
+}
+
+double area_of(const std::vector<Vec3>& positions, const PolygonTriangles& made) {
+  std::vector<Vec3d> all;
+  for (const Vec3& p : positions) all.push_back(to_double(p));
+  for (const PolygonCrossing& c : made.crossings) {
+    const Vec3d a = all[c.edges[0]], b = all[(c.edges[0] + 1) % positions.size()];
+    all.push_back(a + (b - a) * static_cast<double>(c.along[0]));
+  }
+  double area = 0;
+  for (std::size_t t = 0; t < made.corners.size(); t += 3) {
+    const Vec3d &a = all[made.corners[t]], &b = all[made.corners[t + 1]], &c = all[made.corners[t + 2]];
+    const Vec3d n = cross(b - a, c - a);
+    area += std::sqrt(dot(n, n)) / 2;
+  }
+  return area;
+}
+
+std::vector<Vec3> flat(const Loop& loop) {
+  std::vector<Vec3> positions;
+  for (const Vec2& p : loop) positions.push_back({p.x, p.y, 0});
+  return positions;
+}
+
+Loop rotated(const Loop& loop, std::size_t first, bool reversed) {
+  Loop result;
+  for (std::size_t i = 0; i < loop.size(); ++i) result.push_back(loop[(first + i) % loop.size()]);
+  if (reversed) std::reverse(result.begin(), result.end());
+  return result;
+}
+
+using Sides = std::map<std::pair<std::pair<float, float>, std::pair<float, float>>, int>;
+void add_side(const Vec2& a, const Vec2& b, int times, Sides* sides) {
+  const std::pair<float, float> p = {a.x, a.y}, q = {b.x, b.y};
+  if (p == q) return;
+  int& count = (*sides)[std::minmax(p, q)];
+  count += times;
+}
+
+// Sides of odd number: those of the triangles, if each inner one has two; those of the polygon by the even-odd rule.
+std::vector<Sides::key_type> odd_sides(const Sides& sides) {
+  std::vector<Sides::key_type> odd;
+  for (const auto& side : sides)
+    if (side.second % 2) odd.push_back(side.first);
+  return odd;
+}
+
+}  // namespace
+
+// Goal: the area is right for every first corner, both windings and any plane; triangles turn as the polygon does, and
+// none is without area. Method: the exact area of polygons that break fans and ear clippers, in 40 planes each.
+TEST_CASE("hard_68_polygons_have_the_area_of_the_even_odd_rule") {
+  std::mt19937 random(68);
+  std::uniform_real_distribution<float> any(-1, 1);
+  for (const NamedLoop& named : loops()) {
+    CAPTURE(named.name);
+    const double truth = even_odd_area(named.loop);
+    for (std::size_t first = 0; first < named.loop.size(); ++first)
+      for (bool reversed : {false, true}) {
+        const Loop loop = rotated(named.loop, first, reversed);
+        PolygonTriangles made;
+        REQUIRE(triangulate_polygon(flat(loop), &made));
+        CHECK(area_of(flat(loop), made) == doctest::Approx(truth).epsilon(1e-6));
+        const Vec3 u = {any(random), any(random), any(random)}, v = {any(random), any(random), any(random)};
+        const Vec3d n = cross(to_double(u), to_double(v));
+        std::vector<Vec3> tilted;
+        for (const Vec2& p : loop) tilted.push_back(u * p.x + v * p.y + Vec3{.25f, .5f, .125f});
+        REQUIRE(triangulate_polygon(tilted, &made));
+        const double scale = std::sqrt(dot(n, n)), bound = 1e-6 * (truth + 16) * std::max(scale, 0.1);
+        CHECK(std::fabs(area_of(tilted, made) - truth * scale) < bound);
+      }
+  }
+}
+
+// Goal: neighbours of a polygon leave no gap: the sides of its triangles that are not shared are its own, also where
+// corners lie on a line. Method: sides of odd number, of polygons whose sides do not cross.
+TEST_CASE("hard_68_triangles_of_polygons_share_their_sides") {
+  for (const NamedLoop& named : loops()) {
+    const std::string name = named.name;
+    if (name == "bow-tie" || name == "pentagram" || name == "touching its side" || name == "overlapping sides")
+      continue;
+    CAPTURE(named.name);
+    for (std::size_t first = 0; first < named.loop.size(); ++first) {
+      const Loop loop = rotated(named.loop, first, first % 2);
+      PolygonTriangles made;
+      REQUIRE(triangulate_polygon(flat(loop), &made));
+      Sides own, given;
+      for (std::size_t i = 0; i < loop.size(); ++i) add_side(loop[i], loop[(i + 1) % loop.size()], 1, &given);
+      for (std::size_t t = 0; t < made.corners.size(); t += 3) {
+        const Vec2 &a = loop[made.corners[t]], &b = loop[made.corners[t + 1]], &c = loop[made.corners[t + 2]];
+        CHECK((b.x - a.x) * (c.y - a.y) != (b.y - a.y) * (c.x - a.x));
+        add_side(a, b, 1, &own), add_side(b, c, 1, &own), add_side(c, a, 1, &own);
+      }
+      CHECK(odd_sides(own) == odd_sides(given));
+    }
+  }
+}
+
+// Goal: no polygon is too tangled. Method: 4,000 random loops, half of them on a lattice of few points, where sides
+// overlap, touch and cross at corners; slivers, and sizes from 1e-12 to 1e12; the area by slabs.
+TEST_CASE("hard_68_random_loops_have_the_area_of_the_even_odd_rule") {
+  std::mt19937 random(1968);
+  for (int i = 0; i < 4000; ++i) {
+    const int corner_count = 3 + static_cast<int>(random() % 24);
+    const bool on_lattice = i % 2;
+    const float size = std::pow(10.0f, static_cast<float>(static_cast<int>(random() % 25)) - 12);
+    const float height = i % 8 == 0 ? size * 1e-5f : size;
+    auto coordinate = [&] {
+      return on_lattice ? static_cast<float>(random() % 6) : static_cast<float>(random() % 65536) / 65536.0f;
+    };
+    Loop loop;
+    for (int k = 0; k < corner_count; ++k) {
+      const float u = coordinate();
+      loop.push_back({u * size, coordinate() * height});
+    }
+    CAPTURE(i);
+    PolygonTriangles made;
+    REQUIRE(triangulate_polygon(flat(loop), &made));
+    const double whole = static_cast<double>(size) * static_cast<double>(height) * (on_lattice ? 25 : 1);
+    CHECK(std::fabs(area_of(flat(loop), made) - even_odd_area(loop)) < 2e-6 * whole);
+  }
+}
+
+// Goal: time grows with n log n. Method: polygons of 200,000 corners, the worst for fans, ear clippers and sweeps with
+// lists; one that crosses itself some 10⁹ times is refused.
+TEST_CASE("hard_68_polygons_of_many_corners_take_little_time") {
+  const std::vector<NamedLoop> kLarge = {{"round", star(200000, 1, 1)},
+                                         {"star", star(200000, .2f, 1)},
+                                         {"comb", comb(100000, false)},
+                                         {"comb across", comb(100000, true)},
+                                         {"spiral", spiral(200000, 50)}};
+  for (const NamedLoop& named : kLarge) {
+    CAPTURE(named.name);
+    const auto begin = std::chrono::steady_clock::now();
+    PolygonTriangles made;
+    REQUIRE(triangulate_polygon(flat(named.loop), &made));
+    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    MESSAGE(named.name << ": " << seconds << " s");
+    CHECK(made.corners.size() == 3 * (named.loop.size() - 2));
+    CHECK(area_of(flat(named.loop), made) == doctest::Approx(shoelace(named.loop)).epsilon(1e-6));
+    CHECK(seconds < 20);  // 2 s at rest; sanitizers and busy machines take more
+  }
+  std::mt19937 random(9);
+  Loop tangle;
+  for (int i = 0; i < 100000; ++i)
+    tangle.push_back({static_cast<float>(random() % 65536), static_cast<float>(random() % 65536)});
+  tangle.resize(20000);
+  PolygonTriangles made;
+  CHECK_FALSE(triangulate_polygon(flat(tangle), &made));
+}
+
+// Goal: corners at one place keep their own attributes. Method: a square with a keyhole whose slit is at corners 0 and
+// 4 and at 5 and 9: each triangle with such a corner has the one on its side.
+TEST_CASE("polygon_corners_at_one_place_are_told_apart") {
+  const Loop loop = {{0, 0}, {4, 0}, {4, 4}, {0, 4}, {0, 0}, {1, 1}, {1, 3}, {3, 3}, {3, 1}, {1, 1}};
+  PolygonTriangles made;
+  REQUIRE(triangulate_polygon(flat(loop), &made));
+  REQUIRE(made.corners.size() == 24);
+  for (std::size_t t = 0; t < 24; t += 3) {
+    Vec2 middle = {0, 0};
+    for (std::size_t k = 0; k < 3; ++k)
+      middle.x += loop[made.corners[t + k]].x / 3, middle.y += loop[made.corners[t + k]].y / 3;
+    const bool below = middle.x > middle.y;  // the slit is on the diagonal
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t corner = made.corners[t + k];
+      if (corner == 0 || corner == 9) CHECK(below);
+      if (corner == 4 || corner == 5) CHECK_FALSE(below);
+    }
+  }
+}
+
+// Goal: where a polygon crosses itself, the new vertex has the mean attributes of both sides.
+TEST_CASE("polygon_crossings_have_mean_attributes") {
+  SceneBuilder builder;
+  MeshData mesh;
+  mesh.positions = {{0, 0, 0}, {2, 2, 0}, {2, 0, 0}, {0, 2, 0}};
+  mesh.uvs = {{0, 0}, {1, 0}, {0, 0}, {0, 1}};
+  mesh.colors = {{0, 0, 0, 65535}, {65534, 0, 0, 65535}, {0, 0, 0, 65535}, {0, 0, 0, 65535}};
+  append_polygon({0, 1, 2, 3}, &mesh, &builder);
+  REQUIRE(mesh.positions.size() == 5);
+  CHECK(mesh.indices.size() == 6);
+  CHECK(mesh.positions[4] == Vec3{1, 1, 0});
+  CHECK((mesh.uvs[4].x == 0.25f && mesh.uvs[4].y == 0.25f));
+  CHECK((mesh.colors[4].r == 16384 && mesh.colors[4].a == 65535));
+}
