@@ -21,7 +21,7 @@ void note_remark(SceneBuilder* builder, const std::string& what) { add_once(&bui
 
 void require_bytes(const SceneBuilder& builder, std::uint64_t count, std::uint64_t element_bytes, const char* what) {
   std::uint64_t max = builder.options.byte_count_max, left = max - std::min(builder.bytes_charged, max);
-  if (count > left / element_bytes)
+  if (element_bytes > 0 && count > left / element_bytes)
     fail_import("%s would take the scene beyond %llu MiB; use a smaller model", what,
                 static_cast<unsigned long long>(max >> 20));
 }
