@@ -118,6 +118,7 @@ void add_scene_options(Command command, CommonOptions* o, bool scene_required) {
       .one_of(accels)
       .capture_default_str();
   add_camera(command, o);
+  add_model_options(command, &o->animation, &o->model_root);
 }
 
 void add_view_options(Command command, CommonOptions* o) {
@@ -125,6 +126,22 @@ void add_view_options(Command command, CommonOptions* o) {
   add_effects(command, o);
   add_threads(command, o);
   add_camera(command, o);
+}
+
+void add_model_options(Command command, std::string* animation, std::string* root) {
+  command
+      .add_option("--animation", *animation,
+                  "which of the scene's animations plays: its name or number as `plan` lists them, all (those that do "
+                  "not drive the same thing) or none")
+      .default_str("all");
+#ifdef POCKETRAY_HAVE_IMPORT
+  command
+      .add_option("--model-root", *root,
+                  "folder that the model and the files that it names lie below; names with ../ may lead there")
+      .default_str("the model's folder");
+#else
+  (void)root;
+#endif
 }
 
 Option add_environment_option(Command command, std::string* name) {

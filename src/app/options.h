@@ -15,6 +15,10 @@ void add_scene_options(Command command, CommonOptions* options, bool scene_requi
 // SCENE and the options for what a picture of it shows, for commands without settings.
 void add_view_options(Command command, CommonOptions* options);
 // --environment, excluding no other option.
+// --animation, --model-root.
+void add_model_options(Command command, std::string* animation, std::string* root);
+// --animation, --model-root.
+void add_model_options(Command command, std::string* animation, std::string* root);
 Option add_environment_option(Command command, std::string* name);
 // --background, --environment, --light, --fov and --focus. Call after add_scene_options(), or add_view_options().
 // `own_look`: options that the command has and that work with the scene's own look only.

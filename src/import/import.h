@@ -15,7 +15,10 @@ namespace pocketray {
 struct ImportOptions {
   std::uint32_t texture_side_max = 512;  // larger textures are halved until they fit
   bool mip_maps = true;                  // store smaller levels of textures
-  float crease_angle = 40;               // degrees; meshes without normals are smoothed below it (glTF: flat)
+  bool animations = true;                // false: the model at rest
+  // Files that the model names lie below this folder, which the model lies below, too. Empty: the model's own folder.
+  std::string root;
+  float crease_angle = 40;  // degrees; meshes without normals are smoothed below it (glTF: flat)
   std::uint64_t byte_count_max = std::uint64_t(1) << 30;  // refuses larger scenes
   std::uint32_t cpu_seconds_max = 120;                    // for formats read by assimp, which is stopped then
 };

@@ -11,6 +11,7 @@
 #include "base/color.h"
 #include "import/import_error.h"
 #include "import/normals.h"
+#include "import/obj_exact.h"
 #include "import/obj_material.h"
 #include "import/obj_numbers.h"
 #include "import/obj_text.h"
@@ -199,6 +200,7 @@ void import_obj(const std::string& path, Bytes bytes, SceneBuilder* builder) {
   if (!tinyobj::LoadObj(&attributes, &shapes, &materials, &warning, &error, &stream, &material_files, true, false))
     fail_import("%.300s (as tinyobjloader reports); export the file again",
                 error.empty() ? warning.c_str() : error.c_str());
+  recentre_obj(bytes, builder, &attributes.vertices);
   if (warning.find("not found in .mtl") != std::string::npos)
     note_remark(builder, "faces without a known material got the default one");
   for (const tinyobj::material_t& material : materials) add_obj_material(builder, path, material);

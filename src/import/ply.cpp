@@ -6,6 +6,7 @@
 #include "base/check.h"
 #include "base/color.h"
 #include "base/limits.h"
+#include "import/exact.h"
 #include "import/import_error.h"
 #include "import/normals.h"
 #include "import/ply_file.h"
@@ -77,6 +78,7 @@ void read_vertices(const PlyElement& element, SceneBuilder* builder, PlyNumbers*
   }
   if (!has[kX] || !has[kY] || !has[kZ]) fail_import("the PLY file has vertices without x, y, z; export the file again");
   bool normals = has[kNormalX] && has[kNormalY] && has[kNormalZ], colors = has[kRed] && has[kGreen] && has[kBlue];
+  std::vector<Vec3d> exactly;
   constexpr double kFloatMax = static_cast<double>(std::numeric_limits<float>::max());
   for (std::uint64_t i = 0; i < element.count; ++i) {
     double values[kSlotCount] = {};
@@ -89,6 +91,7 @@ void read_vertices(const PlyElement& element, SceneBuilder* builder, PlyNumbers*
         values[slots[p]] = numbers->next(*property.value) / (slots[p] < kRed ? 1 : largest(*property.value));
     }
     mesh->positions.push_back(checked(values, kX, static_cast<double>(kCoordinateMax), "position", i));
+    exactly.push_back({values[kX], values[kY], values[kZ]});
     if (normals) mesh->normals.push_back(normalize(checked(values, kNormalX, kFloatMax, "normal", i)));
     if (!colors) continue;
     checked(values, kRed, kFloatMax, "colour", i);
@@ -96,6 +99,7 @@ void read_vertices(const PlyElement& element, SceneBuilder* builder, PlyNumbers*
     mesh->colors.push_back(
         {linear(values[kRed]), linear(values[kGreen]), linear(values[kBlue]), to_16(values[kAlpha])});
   }
+  recentre(exactly, 2 * element.count, builder, &mesh->positions);  // a mesh has two triangles per vertex
 }
 
 // The vertices of a face or strip as they come, with kNone for the -1 that restarts a strip.

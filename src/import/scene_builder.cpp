@@ -5,6 +5,7 @@
 
 #include "base/check.h"
 #include "base/limits.h"
+#include "import/exact.h"
 #include "import/import_error.h"
 #include "import/tangents.h"
 #include "scene/animate.h"
@@ -124,7 +125,8 @@ static void require_coordinate(const Vec3& p, const MeshData& mesh) {
                 static_cast<double>(kCoordinateMax));
 }
 
-void append_mesh(SceneBuilder* builder, const MeshData& mesh, const Transform& to_world) {
+void append_mesh(SceneBuilder* builder, const MeshData& mesh, const Transform& to_world,
+                 const ExactTransform* exactly) {
   SceneArrays& out = *builder->out;
   std::size_t begin = out.positions.size(), count = mesh.positions.size(), triangle_count = mesh.indices.size() / 3;
   if (count == 0) return;
@@ -133,9 +135,12 @@ void append_mesh(SceneBuilder* builder, const MeshData& mesh, const Transform& t
   if (out.triangles.size() + triangle_count > kTriangleCountMax)
     fail_import("more than %u triangles; simplify the model", kTriangleCountMax);
 
+  const bool is_recentred = exactly && !out.origin.empty();
+  const Vec3d origin = origin_of(*builder);
   out.positions.reserve(begin + count > out.positions.capacity() ? std::max(begin + count, begin * 3 / 2) : 0);
   for (std::size_t i = 0; i < count; ++i) {
-    Vec3 p = transform_point(to_world, mesh.positions[i]);
+    Vec3 p = is_recentred ? to_float(transform_point(*exactly, to_double(mesh.positions[i])) - origin)
+                          : transform_point(to_world, mesh.positions[i]);
     require_coordinate(p, mesh);
     out.positions.push_back(p);
   }
@@ -244,7 +249,11 @@ static bool has_texture(const Material& material) {
 
 void finish_scene(SceneBuilder* builder, const std::string& name, ImportedScene* result) {
   SceneArrays& out = *builder->out;
-  if (out.triangles.empty()) fail_import("no triangles to render; export meshes with faces");
+  if (out.triangles.empty()) {
+    const std::string why = warning_line(*builder);
+    fail_import("no triangles to render; export meshes with faces%s%s%s", why.empty() ? "" : " (", why.c_str(),
+                why.empty() ? "" : ")");
+  }
   if (out.materials.empty()) out.materials.emplace_back();
   std::size_t count = out.positions.size();
   if (!out.normals.empty()) out.normals.resize(count, Vec3{0, 0, 0});
@@ -284,6 +293,8 @@ void finish_scene(SceneBuilder* builder, const std::string& name, ImportedScene*
   scene.rest_positions = view(out.rest_positions), scene.rest_normals = view(out.rest_normals);
   scene.skin_weights = view(out.skin_weights);
   scene.morph_positions = view(out.morph_positions), scene.morph_normals = view(out.morph_normals);
+  scene.animation_labels = view(out.animation_labels), scene.node_visible = view(out.node_visible);
+  scene.origin = view(out.origin);
   Status status = validate_scene(scene);
   if (!status.ok) fail_import("%s", status.message);
   pose_at_start(scene, *builder);

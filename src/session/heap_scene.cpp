@@ -20,6 +20,8 @@ Status read_heap_scene(const std::string& name, const ModelOptions& options, Hea
   import_options.texture_side_max = options.texture_side_max;
   import_options.mip_maps = options.mip_maps;
   import_options.crease_angle = options.crease_angle;
+  import_options.animations = options.animations;
+  import_options.root = options.root;
   RETURN_IF_ERROR(import_model(name, import_options, &result->imported, options.studio));
   result->scene = result->imported.scene;
   result->warning = result->imported.warning;

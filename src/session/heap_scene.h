@@ -25,6 +25,8 @@ struct ModelOptions {
   bool mip_maps = true;
   float crease_angle = 40;
   bool studio = true;  // for models that call for one
+  bool animations = true;
+  std::string root;  // the folder that the model's files lie below; empty: its own
 };
 
 // Makes a built-in scene or imports a model.

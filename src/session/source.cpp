@@ -46,7 +46,10 @@ Status load_baked(const std::string& name, Renderer* renderer, SceneSource* sour
 Status load_imported(const std::string& name, Renderer* renderer, SceneSource* source, SceneStorage* storage) {
   ImportedScene imported;
   const bool with_studio = renderer->look.environment == EnvironmentChoice::as_scene && !renderer->look.has_background;
-  RETURN_IF_ERROR(import_model(name, ImportOptions(), &imported, with_studio));
+  ImportOptions options;
+  options.animations = renderer->animation != kNone;
+  options.root = source->model_root;
+  RETURN_IF_ERROR(import_model(name, options, &imported, with_studio));
   source->warning = imported.warning;
   source->material_names = imported.material_names;
   source->parts = imported.parts;

@@ -22,6 +22,7 @@ struct SceneSource {
   std::string warning;                  // one line; empty: none
   std::vector<std::string> material_names;  // of the scene's materials, as far as the file has them
   std::vector<std::string> files;           // that a model and its environment were read from
+  std::string model_root;        // before loading: the folder that a model's files lie below; empty: the model's own
   NamedBoxes parts;              // named parts of a model and their bounds at time 0; names may occur more than once
   Box focus = empty_box();       // bounds of the part that --focus names; empty: none
   std::size_t bytes_wanted = 0;  // memory needed, if loading failed for lack of it; else 0
