@@ -190,6 +190,7 @@ void import_obj(const std::string& path, Bytes bytes, SceneBuilder* builder) {
   require_bytes(*builder, bytes.size(), 8, "the OBJ text");
   tidy_obj_text(&bytes);
   check_obj_numbers(bytes);
+  recentre_obj(builder, &bytes);
   tinyobj::attrib_t attributes;
   std::vector<tinyobj::shape_t> shapes;
   std::vector<tinyobj::material_t> materials;
@@ -200,7 +201,6 @@ void import_obj(const std::string& path, Bytes bytes, SceneBuilder* builder) {
   if (!tinyobj::LoadObj(&attributes, &shapes, &materials, &warning, &error, &stream, &material_files, true, false))
     fail_import("%.300s (as tinyobjloader reports); export the file again",
                 error.empty() ? warning.c_str() : error.c_str());
-  recentre_obj(bytes, builder, &attributes.vertices);
   if (warning.find("not found in .mtl") != std::string::npos)
     note_remark(builder, "faces without a known material got the default one");
   for (const tinyobj::material_t& material : materials) add_obj_material(builder, path, material);
