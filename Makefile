@@ -137,7 +137,7 @@ demo-split: configure
 # What a hostile peer or file can do: runs libFuzzer on each target for FUZZ_SECONDS, from the committed corpus on. New inputs
 # go to build-fuzz/corpus, those that break something to build-fuzz.
 FUZZ_SECONDS ?= 600
-FUZZ_TARGETS ?= message pray import front text client server
+FUZZ_TARGETS ?= message pray import gltf front text client server
 fuzz:
 	@toolchains/setup.sh desktop clang
 	@mkdir -p build-fuzz && cmake -S . -B build-fuzz -DCMAKE_C_COMPILER=clang -DCMAKE_CXX_COMPILER=clang++ \

@@ -28,10 +28,11 @@ enum class Button : std::uint8_t {
   finer,
   faster,
   side_by_side,
-  traced
+  traced,
+  animation
 };
 constexpr int kPadButtonCount = 12;  // up … select: those of a handheld
-constexpr int kButtonCount = 19;     // with the keys of a desktop keyboard
+constexpr int kButtonCount = 20;     // with the keys of a desktop keyboard
 
 enum class EventType : std::uint8_t { button_down, button_up, file_drop, quit };
 

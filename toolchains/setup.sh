@@ -36,7 +36,7 @@ optional() {
     armhf | armel | aarch64 | armv6 | armv7 | mips32 | armv4t | cross) echo ninja=ninja-build ;;
     tests) echo openssl=openssl libembree-dev valgrind=valgrind libpng-dev zip=zip unzip=unzip mksquashfs=squashfs-tools ;; # to compare TLS and depth, count instructions, read pictures
     ci) echo ccache=ccache identify=imagemagick ffmpeg=ffmpeg ;; # to build again, and to read animations
-    desktop) echo ninja=ninja-build libsdl2-dev libtinygltf-dev libassimp-dev libstb-dev libopenexr-dev libmbedtls-dev ;;
+    desktop) echo ninja=ninja-build libsdl2-dev libtinygltf-dev libassimp-dev libstb-dev libwebp-dev libdraco-dev libmeshoptimizer-dev libopenexr-dev libmbedtls-dev ;;
   esac
 }
 

@@ -40,6 +40,7 @@ constexpr KeyButton kMoreKeys[] = {
     {KEY_PAGEDOWN, Button::faster},
     {KEY_V, Button::side_by_side},
     {KEY_T, Button::traced},
+    {KEY_N, Button::animation},
 };
 
 constexpr std::uint16_t kAxisCodes[4] = {ABS_X, ABS_Y, ABS_HAT0X, ABS_HAT0Y};

@@ -40,6 +40,7 @@ constexpr KeyButton kKeys[] = {
     {SDL_SCANCODE_PAGEDOWN, Button::faster},
     {SDL_SCANCODE_V, Button::side_by_side},
     {SDL_SCANCODE_T, Button::traced},
+    {SDL_SCANCODE_N, Button::animation},
 };
 
 struct ControllerButton {

@@ -9,6 +9,7 @@
 #include "plan/plan_scene.h"
 #include "platform/file.h"
 #include "scene/baked.h"
+#include "session/animation_choice.h"
 #include "session/compress.h"
 #include "session/environment.h"
 #include "session/heap_scene.h"
@@ -21,7 +22,7 @@ namespace pocketray {
 namespace {
 
 struct BakeOptions {
-  std::string input, output, json, environment, accel = kBvhAccel.name, textures = "exact";
+  std::string input, output, json, environment, animation, accel = kBvhAccel.name, textures = "exact";
   ModelOptions model;
   bool radiosity = false, no_mip_maps = false;
 };
@@ -60,6 +61,19 @@ nlohmann::json report_textures(const CompressedTextures& compressed, bool prints
   return rows;
 }
 
+// Leaves only the animation that is asked for.
+Status keep_animation(const std::string& asked, Scene* scene) {
+  std::uint32_t index;
+  RETURN_IF_ERROR(find_animation(*scene, asked, &index));
+  if (asked.empty() || asked == kAllAnimations) return success();
+  static constexpr Animation kStill = {0, 0, 0};
+  if (index == kNone && scene->animations.count) scene->animations = {&kStill, 1}, scene->animation_labels = {};
+  if (index == kNone) return success();
+  scene->animations = {&scene->animations[index], 1};
+  if (scene->animation_labels.count) scene->animation_labels = {&scene->animation_labels[index], 1};
+  return success();
+}
+
 Status bake(const BakeOptions& o) {
   RETURN_IF_ERROR(check(o));
   if (o.output == "-") RETURN_IF_ERROR(keep_output_for_data());
@@ -67,8 +81,10 @@ Status bake(const BakeOptions& o) {
   HeapScene heap;
   ModelOptions model = o.model;
   model.mip_maps = !o.no_mip_maps, model.studio = o.environment.empty();
+  model.animations = o.animation != kNoAnimation;
   RETURN_IF_ERROR(read_heap_scene(o.input, model, &heap));
   Scene& scene = heap.scene;
+  RETURN_IF_ERROR(keep_animation(o.animation, &scene));
   double read_ms = static_cast<double>(clock_ns() - start) * 1e-6;
   start = clock_ns();
   EnvironmentMemory environment;
@@ -155,6 +171,7 @@ void add_bake_command(Command program, int* exit_status) {
                    "solve the light between diffuse surfaces and store it; costs seconds to minutes here and little on "
                    "the device. It is solved for the pose at time 0");
   add_environment_option(command, &options->environment);
+  add_animation_option(command, &options->animation);
   add_reading_options(command, &options->model.reading);
   std::vector<std::string> names;
   std::string help;

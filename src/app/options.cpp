@@ -118,6 +118,7 @@ void add_scene_options(Command command, CommonOptions* o, bool scene_required) {
       .one_of(accels)
       .capture_default_str();
   add_camera(command, o);
+  add_animation_option(command, &o->animation);
   add_reading_options(command, &o->reading);
 }
 
@@ -136,9 +137,21 @@ void add_reading_options(Command command, ReadingChoice* choice) {
       .default_str("z for PLY and STL, y for the others");
   command.add_flag("--strict", choice->strict,
                    "refuse a model with vertices that are not finite instead of leaving out their faces");
+  command
+      .add_option("--model-root", choice->root,
+                  "folder that the model and the files that it names lie below; names with ../ may lead there")
+      .default_str("the model's folder");
 #else
   (void)command, (void)choice;
 #endif
+}
+
+void add_animation_option(Command command, std::string* name) {
+  command
+      .add_option("--animation", *name,
+                  "which of the scene's animations plays: its name or number as `plan` lists them, all (those that do "
+                  "not drive the same thing) or none")
+      .default_str("all");
 }
 
 Option add_environment_option(Command command, std::string* name) {

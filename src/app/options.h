@@ -14,8 +14,10 @@ namespace pocketray {
 void add_scene_options(Command command, CommonOptions* options, bool scene_required = true);
 // SCENE and the options for what a picture of it shows, for commands without settings.
 void add_view_options(Command command, CommonOptions* options);
-// --up and --strict, where models can be read.
+// --up, --strict and --model-root, where models can be read.
 void add_reading_options(Command command, ReadingChoice* choice);
+// --animation: which of the scene's animations plays.
+void add_animation_option(Command command, std::string* name);
 // --environment, excluding no other option.
 Option add_environment_option(Command command, std::string* name);
 // --background, --environment, --light, --fov and --focus. Call after add_scene_options(), or add_view_options().

@@ -6,6 +6,7 @@
 #include "app/commands.h"
 #include "app/options.h"
 #include "effect/effect_list.h"
+#include "session/animation_choice.h"
 #include "session/measure.h"
 #include "session/note.h"
 #include "session/output.h"
@@ -39,6 +40,22 @@ void print_contents(const std::string& name, const Renderer& renderer) {
   std::printf("; accelerator %s\n", renderer.accel_info->name);
 }
 
+void print_animations(const Renderer& renderer) {
+  const Scene& scene = renderer.scene;
+  for (std::uint32_t index : numbered_animations(scene)) std::printf("%s\n", describe_animation(scene, index).c_str());
+  if (scene.animations.count > 1 || (scene.animations.count && renderer.animation == kNone))
+    std::printf("plays: %s\n", describe_animation(scene, renderer.animation).c_str());
+}
+
+Json animations_json(const Renderer& renderer) {
+  Json list = Json::array();
+  for (std::uint32_t index : numbered_animations(renderer.scene))
+    list.push_back({{"description", describe_animation(renderer.scene, index)},
+                    {"seconds", renderer.scene.animations[index].duration},
+                    {"plays", index == renderer.animation}});
+  return list;
+}
+
 int run(const CommonOptions& options, bool prices) {
   OpenScene opened;
   Status status = check_outputs({{"SCENE", options.scene}}, {{"--json", options.json}});
@@ -48,6 +65,7 @@ int run(const CommonOptions& options, bool prices) {
     print_notes(opened);
     if (options.json != "-") {
       print_contents(options.scene, renderer);
+      print_animations(renderer);
       print_effects(renderer.effects);
       print_memory(renderer.memory);
       const char* without = renderer.coherence_state.unplanned_because;
@@ -60,6 +78,7 @@ int run(const CommonOptions& options, bool prices) {
                    {"fits", status.ok},
                    {"accelerator", renderer.accel_info->name},
                    {"coherence", renderer.coherence_state.planned},
+                   {"animations", animations_json(renderer)},
                    {"effects", effects_json(renderer.effects)},
                    {"memory", memory_json(renderer.memory)}};
       Status written = write_json(options.json, json);

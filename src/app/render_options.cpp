@@ -19,14 +19,11 @@ Status parse_aov(const std::string& text, Aov* aov) {
   constexpr struct {
     const char* name;
     Aov aov;
-  } kNames[] = {{"none", Aov::none},
-                {"depth", Aov::depth},
-                {"normal", Aov::normal},
-                {"triangle", Aov::triangle},
-                {"cost", Aov::cost}};
+  } kNames[] = {{"none", Aov::none},         {"depth", Aov::depth},       {"normal", Aov::normal},
+                {"triangle", Aov::triangle}, {"position", Aov::position}, {"cost", Aov::cost}};
   for (const auto& row : kNames)
     if (text == row.name) return *aov = row.aov, success();
-  return failure("--aov is '%s': it must be depth, normal, triangle or cost", text.c_str());
+  return failure("--aov is '%s': it must be depth, normal, triangle, position or cost", text.c_str());
 }
 
 Status parse_raw_format(const std::string& text, PixelFormat* format) {
@@ -51,6 +48,7 @@ std::string numbered_path(const std::string& path, std::uint32_t number) {
 // Refuses pictures that servers cannot send.
 Status check_shareable(const RenderOptions& o, const RenderRequest& request) {
   if (o.servers.addresses.empty()) return success();
+  RETURN_IF_ERROR(check_servers_animation(o.common));
   if (request.aov != Aov::none) return failure("--server sends only colours: drop --server or --aov");
   if (stores_values(request.kind))
     return failure(
@@ -221,7 +219,7 @@ std::string identity_of(const RenderOptions& o, const RenderRequest& request, co
     add(" %a %a %a", static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z));
   add(" %a %a %d %u %d", static_cast<double>(c.vertical_fov), static_cast<double>(c.vertical_extent),
       static_cast<int>(c.projection), renderer.camera_index, renderer.camera_overridden);
-  add(" %a %d", static_cast<double>(renderer.exposure), static_cast<int>(renderer.look.light));
+  add(" %a %d %u", static_cast<double>(renderer.exposure), static_cast<int>(renderer.look.light), renderer.animation);
   add(" %a %u %a %a", static_cast<double>(o.orbit_degrees), o.turntable, o.seconds, o.frames_per_second);
   if (moves_camera(o)) add(" %u", request.sequence.first);
   const PixelBox box = box_to_write(request.picture, renderer.settings);
@@ -253,12 +251,13 @@ std::vector<std::string> unexpected(const RenderOptions& o, const RenderRequest&
   std::vector<std::string> notes;
   const bool sequence = request.sequence.given && o.turntable == 0;
   const double last = sequence ? time_of(o, request, request.sequence.last, scene.info) : o.seconds;
-  if (!is_animated(scene)) {
+  if (!is_animated(scene) || renderer.animation == kNone) {
     if (o.seconds != 0) notes.push_back("--time has no effect: the scene does not move");
     if (sequence && !moves_camera(o) && request.sequence.last > request.sequence.first)
       notes.push_back(
           "all frames are equal: the scene does not move; --turntable N or --orbit DEGREES moves the camera");
-  } else if (const double duration = static_cast<double>(scene.animations[0].duration); last >= duration && last > 0) {
+  } else if (const double duration = static_cast<double>(scene.animations[renderer.animation].duration);
+             last >= duration && last > 0) {
     char text[160];
     std::snprintf(text, sizeof text, "the animation lasts %g s and begins anew then: %s %g s shows its %g s", duration,
                   sequence ? "the last frame, at" : "--time", last, duration > 0 ? std::fmod(last, duration) : 0);
@@ -333,9 +332,10 @@ void add_render_options(Command command, RenderOptions* o) {
   command.add_option("--crop", o->crop,
                      "X,Y,WxH: trace and write only these pixels of the picture, counted from the top left");
   command
-      .add_option("--aov", o->aov,
-                  "write depth, normal, triangle or cost in false colours instead of the picture; .pfm and .exr have "
-                  "the values")
+      .add_option(
+          "--aov", o->aov,
+          "write depth, normal, triangle, position or cost in false colours instead of the picture; .pfm and .exr have "
+          "the values")
       .capture_default_str();
   command.add_flag("--no-legend", o->no_legend, "leave out the legend at the bottom left of --aov");
   command.add_option("--rotate", o->rotation, "rotate .raw pictures clockwise: 0, 90, 180 or 270")

@@ -169,6 +169,7 @@ Status check_options(const ViewCommand& o) {
       return failure("%s changes settings per frame and servers cannot: drop %s or --server", option, option);
     if (!o.side_by_side.reference.empty())
       return failure("--side-by-side works only without render servers: drop --side-by-side or --server");
+    RETURN_IF_ERROR(check_servers_animation(o.common));
   }
   if (o.common.scene.empty() && o.view.backend == "null")
     return failure("nothing can be chosen on --screen null: name a SCENE");
@@ -266,6 +267,7 @@ void add_view_command(Command program, const OptionalParts& parts, int* exit_sta
                              "  S [X]                 pause\n"
                              "  F1, A [Y]             toggle the overlay\n") +
                  (parts.side_by_side ? "  V                     toggle the reference of --side-by-side\n" : "") +
+                 "  N                     play the next animation, or none\n"
                  "  T                     dim the pixels that the last frame did not trace again\n"
                  "  F12                   save a screenshot\n"
                  "  F5                    reload the scene\n"

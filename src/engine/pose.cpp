@@ -2,6 +2,7 @@
 #include "base/check.h"
 #include "effect/effect_probe.h"
 #include "engine/prepare.h"
+#include "engine/recolor.h"
 
 namespace pocketray {
 namespace {
@@ -16,13 +17,26 @@ void follow_motion(Renderer* renderer) {
   renderer->accel_info->build(&renderer->accel, &keep, &renderer->frame_arena);
 }
 
+// A material that then calls for an effect which the scene as opened does not keeps its last values.
+void change_posed_materials(Renderer* renderer) {
+  for (const Channel& channel : renderer->scene.channels) {
+    if (channel.path < ChannelPath::material_diffuse) continue;
+    const Material& posed = renderer->pose.materials[channel.node];
+    Material material = renderer->scene.materials[channel.node];
+    if (material.diffuse == posed.diffuse && material.emission == posed.emission) continue;
+    material.diffuse = posed.diffuse, material.emission = posed.emission;
+    (void)change_material(renderer, channel.node, material);
+  }
+}
+
 void pose_at_time(Renderer* renderer, double seconds) {
   renderer->frame.positions = renderer->scene.positions;
   renderer->frame.normals =
       has(renderer->effects.mask, Effect::smooth_normal) ? renderer->scene.normals : Array<const Vec3>();
   if (!has(renderer->effects.mask, Effect::animation) || !is_animated(renderer->scene)) return;
   effect_entered<Effect::animation>();
-  pose_at(renderer->scene, 0, seconds, &renderer->pose);
+  pose_at(opened_scene(*renderer), renderer->animation, seconds, &renderer->pose);
+  if (renderer->pose.materials.count) change_posed_materials(renderer);
   if (renderer->pose.positions.count) renderer->frame.positions = renderer->pose.positions;
   if (renderer->frame.normals.count && renderer->pose.normals.count) renderer->frame.normals = renderer->pose.normals;
 }

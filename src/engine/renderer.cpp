@@ -145,6 +145,7 @@ Status plan_renderer(Renderer* renderer, const SceneStorage& storage, const Outp
       return failure("a material uses glossy lobe %u, this program has %u: bake the scene again", m.brdf, kBrdfCount);
   add_what_is_missing(renderer);
   renderer->effects = plan_effects(renderer->scene, renderer->settings);
+  if (moves(*renderer) && animates_materials(renderer->scene)) renderer->recolorable = true;
   std::uint32_t point_count;
   RETURN_IF_ERROR(light_point_count(renderer->scene, renderer->settings, renderer->effects.mask, &point_count));
   if (renderer->light_count_max > renderer->scene.lights.count)

@@ -110,6 +110,7 @@ struct Renderer {
   EffectMask lit_mask = ~EffectMask(0);  // and the effects; ~0: not placed
   bool camera_overridden = false;
   std::uint32_t camera_index = 0;
+  std::uint32_t animation = 0;  // that plays; kNone: the pose at rest
   float exposure = 1;
   Timings timings;
   Coherence coherence;  // made if planned

@@ -12,6 +12,7 @@
 #include <cstring>
 
 #include "import/assimp_parts.h"
+#include "import/exact.h"
 #include "import/import_error.h"
 #include "import/normals.h"
 #include "import/polygon.h"
@@ -137,14 +138,36 @@ Transform transform_of(const aiMatrix4x4& m) {
   return t;
 }
 
+// The bounds of the meshes below a node, and their triangles.
+void measure(const std::vector<MeshData>& meshes, const aiNode& node, const ExactTransform& world, ExactBox* box,
+             std::uint64_t* triangle_count) {
+  for (unsigned i = 0; i < node.mNumMeshes; ++i) {
+    if (node.mMeshes[i] >= meshes.size()) continue;
+    const MeshData& mesh = meshes[node.mMeshes[i]];
+    ExactBox local;
+    for (const Vec3& p : mesh.positions) extend(&local, to_double(p));
+    if (!mesh.positions.empty()) extend(box, world, local);
+    *triangle_count += mesh.indices.size() / 3;
+  }
+  for (unsigned i = 0; i < node.mNumChildren; ++i)
+    measure(meshes, *node.mChildren[i], world * exact(transform_of(node.mChildren[i]->mTransformation)), box,
+            triangle_count);
+}
+
 void append_nodes(AssimpReader* reader, std::vector<MeshData>* meshes) {
   struct Visit {
     const aiNode* node;
     Transform world;
+    ExactTransform exactly;
     std::uint32_t parent;  // part
   };
-  std::vector<Visit> stack = {
-      {reader->scene->mRootNode, reader->upright * transform_of(reader->scene->mRootNode->mTransformation), kNone}};
+  const aiNode& root = *reader->scene->mRootNode;
+  const Transform root_world = reader->upright * transform_of(root.mTransformation);
+  ExactBox bounds;
+  std::uint64_t triangle_count = 0;
+  measure(*meshes, root, exact(root_world), &bounds, &triangle_count);
+  choose_origin(bounds, triangle_count, reader->builder);
+  std::vector<Visit> stack = {{&root, root_world, exact(root_world), kNone}};
   while (!stack.empty()) {
     Visit visit = stack.back();
     stack.pop_back();
@@ -153,11 +176,12 @@ void append_nodes(AssimpReader* reader, std::vector<MeshData>* meshes) {
       unsigned mesh = visit.node->mMeshes[i];
       if (mesh >= meshes->size()) fail_import("a node uses a mesh that does not exist; export the file again");
       require_invertible(visit.world, std::string("node '") + visit.node->mName.C_Str() + "'");
-      append_mesh(reader->builder, (*meshes)[mesh], visit.world);
+      append_mesh(reader->builder, (*meshes)[mesh], visit.world, &visit.exactly);
     }
-    for (unsigned i = visit.node->mNumChildren; i-- > 0;)
-      stack.push_back(
-          {visit.node->mChildren[i], visit.world * transform_of(visit.node->mChildren[i]->mTransformation), part});
+    for (unsigned i = visit.node->mNumChildren; i-- > 0;) {
+      const Transform local = transform_of(visit.node->mChildren[i]->mTransformation);
+      stack.push_back({visit.node->mChildren[i], visit.world * local, visit.exactly * exact(local), part});
+    }
   }
 }
 

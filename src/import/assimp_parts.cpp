@@ -9,6 +9,7 @@
 #include "base/color.h"
 #include "base/fmath.h"
 #include "base/limit_list.h"
+#include "import/exact.h"
 #include "import/files.h"
 #include "import/image.h"
 #include "import/import_error.h"
@@ -113,13 +114,13 @@ void add_camera(SceneBuilder* builder, const aiCamera& source, const Transform& 
 }
 
 // World transform of the node with the light's or camera's name.
-Transform world_of(const aiScene& scene, const aiString& name) {
+Transform world_of(const aiScene& scene, const aiString& name, const Vec3d& origin) {
   aiMatrix4x4 m;
   for (const aiNode* node = scene.mRootNode->FindNode(name); node; node = node->mParent) m = node->mTransformation * m;
   Transform t;
   for (unsigned row = 0; row < 3; ++row)
     for (unsigned column = 0; column < 4; ++column) t.m[row][column] = m[row][column];
-  return t;
+  return recentred(exact(t), origin);
 }
 
 }  // namespace
@@ -169,10 +170,11 @@ std::uint32_t add_assimp_material(SceneBuilder* builder, const std::string& scen
 void add_assimp_lights_and_cameras(SceneBuilder* builder, const aiScene& scene) {
   if (scene.mNumLights > kLightCountMax || scene.mNumCameras > kCameraCountMax)
     fail_import("%u lights and %u cameras; remove some", scene.mNumLights, scene.mNumCameras);
+  const Vec3d origin = origin_of(*builder);
   for (unsigned i = 0; i < scene.mNumLights; ++i)
-    add_light(builder, *scene.mLights[i], world_of(scene, scene.mLights[i]->mName));
+    add_light(builder, *scene.mLights[i], world_of(scene, scene.mLights[i]->mName, origin));
   for (unsigned i = 0; i < scene.mNumCameras; ++i)
-    add_camera(builder, *scene.mCameras[i], world_of(scene, scene.mCameras[i]->mName));
+    add_camera(builder, *scene.mCameras[i], world_of(scene, scene.mCameras[i]->mName, origin));
 }
 
 }  // namespace pocketray

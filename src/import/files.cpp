@@ -10,6 +10,7 @@
 #include <cctype>
 #include <cerrno>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <memory>
 
@@ -48,20 +49,70 @@ Bytes read_file(const std::string& path, std::uint64_t byte_count_max, FilesRead
   return bytes;
 }
 
-std::string path_beside(const std::string& scene_path, const std::string& name) {
-  std::string relative = name;
-  std::replace(relative.begin(), relative.end(), '\\', '/');
-  bool outside = relative.empty() || relative[0] == '/' || relative.find(':') != std::string::npos ||
-                 relative.find('\0') != std::string::npos;
-  for (std::size_t begin = 0; begin <= relative.size();) {
-    std::size_t end = std::min(relative.find('/', begin), relative.size());
-    outside |= relative.compare(begin, end - begin, "..") == 0;
+namespace {
+
+std::vector<std::string> parts_of(const std::string& path) {
+  std::vector<std::string> parts;
+  for (std::size_t begin = 0; begin <= path.size();) {
+    const std::size_t end = std::min(path.find('/', begin), path.size());
+    if (end > begin) parts.push_back(path.substr(begin, end - begin));
     begin = end + 1;
   }
-  if (outside)
-    fail_import("the file names '%.200s'; put that file beside the scene and name it without a path", name.c_str());
-  std::size_t slash = scene_path.rfind('/');
-  return (slash == std::string::npos ? std::string() : scene_path.substr(0, slash + 1)) + relative;
+  return parts;
+}
+
+// Resolves "." and ".."; false if that leads above the first part.
+bool resolve(const std::vector<std::string>& parts, std::vector<std::string>* resolved) {
+  for (const std::string& part : parts) {
+    if (part == "..") {
+      if (resolved->empty()) return false;
+      resolved->pop_back();
+    } else if (part != ".") {
+      resolved->push_back(part);
+    }
+  }
+  return true;
+}
+
+std::string joined(const std::vector<std::string>& parts) {
+  std::string path;
+  for (const std::string& part : parts) path += (path.empty() ? "" : "/") + part;
+  return path;
+}
+
+std::string real_path(const std::string& path) {
+  std::unique_ptr<char, void (*)(void*)> real(realpath(path.empty() ? "." : path.c_str(), nullptr), std::free);
+  return real ? real.get() : "";
+}
+
+// The path of a name that ".." leads above the scene file's folder, if it stays below `root`; empty: it does not.
+std::string path_below(const std::string& root, const std::string& folder, const std::vector<std::string>& parts) {
+  const std::string real_root = real_path(root), real_folder = real_path(folder);
+  if (real_root.empty() || real_folder.empty()) return "";
+  std::vector<std::string> resolved = parts_of(real_folder);
+  const std::vector<std::string> above = parts_of(real_root);
+  if (!resolve(parts, &resolved) || resolved.size() <= above.size() ||
+      !std::equal(above.begin(), above.end(), resolved.begin()))
+    return "";
+  return "/" + joined(resolved);
+}
+
+}  // namespace
+
+std::string path_beside(const std::string& scene_path, const std::string& name, const std::string& root) {
+  std::string relative = name;
+  std::replace(relative.begin(), relative.end(), '\\', '/');
+  const bool is_plain = !relative.empty() && relative[0] != '/' && relative.back() != '/' &&
+                        relative.find(':') == std::string::npos && relative.find('\0') == std::string::npos;
+  const std::string folder = scene_path.substr(0, scene_path.rfind('/') + 1);
+  std::vector<std::string> resolved;
+  if (is_plain && relative.find("..") == std::string::npos) return folder + relative;
+  if (is_plain && resolve(parts_of(relative), &resolved) && !resolved.empty()) return folder + joined(resolved);
+  const std::string path = is_plain ? path_below(root.empty() ? folder : root, folder, parts_of(relative)) : "";
+  if (path.empty())
+    fail_import("the file names '%.200s'; put that file beside the scene and name it without a path%s", name.c_str(),
+                is_plain ? ", or name the folder of both by --model-root" : "");
+  return path;
 }
 
 // The entry of `folder` with that name, else with the same but for case: the first in byte order. Empty if none.
@@ -76,10 +127,10 @@ static std::string entry_in_any_case(const std::string& folder, const std::strin
   return found;
 }
 
-std::string find_beside(const std::string& scene_path, const std::string& name) {
-  std::string path = path_beside(scene_path, name);
+std::string find_beside(const std::string& scene_path, const std::string& name, const std::string& root) {
+  std::string path = path_beside(scene_path, name, root);
   std::string folder = scene_path.substr(0, scene_path.rfind('/') + 1);
-  if (access(path.c_str(), F_OK) == 0) return path;
+  if (access(path.c_str(), F_OK) == 0 || path.compare(0, folder.size(), folder) != 0) return path;
   std::string relative = path.substr(folder.size());
   for (std::size_t begin = 0; begin < relative.size();) {
     std::size_t end = std::min(relative.find('/', begin), relative.size());
@@ -93,7 +144,7 @@ std::string find_beside(const std::string& scene_path, const std::string& name) 
 
 Bytes read_beside(const std::string& scene_path, const std::string& name, std::uint64_t byte_count_max,
                   FilesRead* files) {
-  return read_file(find_beside(scene_path, name), byte_count_max, files);
+  return read_file(find_beside(scene_path, name, files->root), byte_count_max, files);
 }
 
 static int hex_digit(char c) {

@@ -1,4 +1,4 @@
-// Reads files beside the scene file. Names in a scene file cannot leave its folder.
+// Reads files beside the scene file. Names in a scene file cannot leave its folder, or another that holds both.
 #pragma once
 #include <cstdint>
 #include <set>
@@ -11,6 +11,7 @@ using Bytes = std::vector<std::uint8_t>;
 
 // The files that an import has opened, each once. Bounded, since a scene file may name any number.
 struct FilesRead {
+  std::string root;  // the folder that names may lead to; empty: the scene file's
   std::set<std::string> paths;
   std::size_t byte_count = 0;
 };
@@ -23,13 +24,13 @@ void note_file(FilesRead* files, const std::string& path);
 // `byte_count_max`, before allocating.
 Bytes read_file(const std::string& path, std::uint64_t byte_count_max, FilesRead* files);
 
-// Path of the file `name` in the scene file at `scene_path`: relative, without "..", with '\' read as '/'. Throws
-// ImportError for any other name.
-std::string path_beside(const std::string& scene_path, const std::string& name);
+// Path of the file `name` in the scene file at `scene_path`: relative, with '\' read as '/'. Throws ImportError for any
+// other name, and for one that ".." leads out of the folder `root`, by default the scene file's.
+std::string path_beside(const std::string& scene_path, const std::string& name, const std::string& root = "");
 
 // The same path, or if no such file exists, one that differs only in the case of ASCII letters, as on systems that do
 // not tell them apart.
-std::string find_beside(const std::string& scene_path, const std::string& name);
+std::string find_beside(const std::string& scene_path, const std::string& name, const std::string& root = "");
 Bytes read_beside(const std::string& scene_path, const std::string& name, std::uint64_t byte_count_max,
                   FilesRead* files);
 

@@ -19,6 +19,7 @@ void append_moving(GltfFile* file, int index, const MeshData& mesh, const Transf
   MovingMesh moving = {};
   if (is_skinned(source, mesh)) {
     moving.node = mesh.morph_count > 0 ? node.out_node : kNone;
+    if (node.visibility_moves && mesh.morph_count == 0) gltf_fixed_part(*file, index, &moving.node);
     moving.skin = gltf_export_skin(file, source.skin);
     std::vector<Transform> joints = gltf_skin_transforms(file, source.skin);
     gltf_check_joints(mesh, joints.size());
@@ -38,22 +39,26 @@ void append_placed(GltfFile* file, int index, MeshData mesh, const Transform& in
   if (!skinned) mesh.skin_weights.clear();
   if (mesh.morph_count > 0 && !node.weights_move)
     gltf_apply_morph(&mesh, gltf_morph_weights(*file, index, mesh.morph_count));
-  bool moves = skinned ? gltf_skin_moves(*file, source.skin) : node.moves;
+  bool moves = skinned ? gltf_skin_moves(*file, source.skin) || node.visibility_moves : node.moves;
   if (moves || (mesh.morph_count > 0 && node.weights_move)) {
     mesh.tangents.clear();
     return append_moving(file, index, mesh, instance);
   }
   if (skinned) gltf_apply_skin(&mesh, gltf_skin_transforms(file, source.skin));
-  append_mesh(file->builder, mesh, skinned ? Transform() : node.world * instance);
+  if (skinned) return append_mesh(file->builder, mesh, Transform());
+  const ExactTransform exactly = node.world_exactly * exact(instance);
+  append_mesh(file->builder, mesh, node.world * instance, &exactly);
 }
 
 void append_node_meshes(GltfFile* file, int index, MeshCache* meshes) {
   const tinygltf::Node& source = file->model.nodes[static_cast<std::size_t>(index)];
-  if (source.mesh < 0) return;
+  const GltfNode& node = file->nodes[static_cast<std::size_t>(index)];
+  if (source.mesh < 0 || node.unseen) return;
   auto known = meshes->find(source.mesh);
   if (known == meshes->end()) known = meshes->emplace(source.mesh, gltf_mesh(file, source.mesh)).first;
-  if (source.skin < 0)
-    require_invertible(file->nodes[static_cast<std::size_t>(index)].world, gltf_node_name(*file, index));
+  const bool has_skin = source.skin >= 0;  // which places the mesh
+  if (node.hidden && !has_skin) return;
+  if (!has_skin && !node.flat) require_invertible(node.world, gltf_node_name(*file, index));
   for (const Transform& instance : gltf_instances(file, index)) {
     require_invertible(instance, gltf_node_name(*file, index));
     for (const MeshData& mesh : known->second) append_placed(file, index, mesh, instance);
@@ -74,13 +79,15 @@ void import_gltf(const std::string& path, Bytes bytes, SceneBuilder* builder) {
   file.path = path;
   file.builder = builder;
   gltf_parse(&file, std::move(bytes));
+  gltf_decompress(&file);
   file.materials.assign(file.model.materials.size(), kNone);
   file.uv_sets.resize(file.model.materials.size());
   gltf_visit_nodes(&file);
+  gltf_recentre(&file);
+  gltf_read_animations(&file);
   gltf_mark_movers(&file);
   gltf_mark_joints(&file);
   gltf_export_nodes(&file);
-  gltf_export_animations(&file);
   MeshCache meshes;
   std::vector<std::uint32_t> parts(file.nodes.size(), kNone);
   for (std::size_t i = 0; i < file.visible_count; ++i) {
@@ -90,6 +97,7 @@ void import_gltf(const std::string& path, Bytes bytes, SceneBuilder* builder) {
     append_node_meshes(&file, index, &meshes);
   }
   gltf_lights_and_cameras(&file);
+  gltf_export_animations(&file);
 }
 
 }  // namespace pocketray

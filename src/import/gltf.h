@@ -5,11 +5,13 @@
 #include <tiny_gltf.h>
 
 #include <map>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "base/limits.h"
+#include "import/exact.h"
 #include "import/files.h"
 #include "import/image.h"
 #include "import/scene_builder.h"
@@ -20,11 +22,18 @@ namespace pocketray {
 struct GltfNode {
   bool visited = false;
   int parent = -1;
-  Transform local, world;     // at rest
-  bool moves = false;         // an animation moves it or a node above it
-  bool weights_move = false;  // an animation sets its morph weights
-  int mover = -1;             // the nearest node at or above it with an animation channel
-  bool exported = false;      // becomes a Node of the scene
+  Transform local, world;  // at rest
+  ExactTransform local_exactly, world_exactly;
+  bool visible = true;            // by its own KHR_node_visibility
+  bool scale_moves = false;       // an animation sets its scale,
+  bool visibility_moves = false;  // or its visibility or that of a node above it
+  bool unseen = false;            // it or a node above it is not visible, and never will be
+  bool hidden = false;            // unseen, or without volume for good: by a scale of 0 of it or of a node above it
+  bool flat = false;              // without volume at rest
+  bool moves = false;             // an animation moves it or a node above it
+  bool weights_move = false;      // an animation sets its morph weights
+  int mover = -1;                 // the nearest node at or above it with an animation channel
+  bool exported = false;          // becomes a Node of the scene
   std::uint32_t out_node = kNone;
 };
 
@@ -33,13 +42,32 @@ struct GltfUvSets {
   int first = -1, second = -1;
 };
 
+// What a channel of an animation drives.
+struct GltfTarget {
+  ChannelPath path = ChannelPath::translation;
+  int index = -1;  // of a node, light, camera or material of the file
+};
+// Key times and values of a sampler as they go into the scene.
+struct GltfKeys {
+  std::vector<float> times, values;
+  Interpolation interpolation = Interpolation::linear;
+};
+// A channel that can be used.
+struct GltfDrive {
+  std::size_t animation;  // of the file
+  GltfTarget target;
+  GltfKeys keys;
+};
+
 struct GltfFile {
   std::string path;
   SceneBuilder* builder = nullptr;
   tinygltf::Model model;
   Bytes binary_chunk;  // of a .glb
   bool has_binary_chunk = false;
-  std::vector<GltfNode> nodes;         // parallel to model.nodes
+  std::vector<GltfNode> nodes;                              // parallel to model.nodes
+  std::vector<GltfDrive> drives;                            // in the file's order
+  std::vector<std::vector<std::uint32_t>> lights, cameras;  // of the scene, for each of the file's
   std::vector<int> order;              // visited nodes, parents first; those of the default scene lead
   std::size_t visible_count = 0;       // nodes of the default scene in `order`; the rest belong to joints outside of it
   std::map<int, std::uint32_t> skins;  // glTF skin → scene skin
@@ -53,6 +81,7 @@ struct GltfFile {
   std::map<TexelUse, TexelRun> texels;             // glTF image → its texels in the scene
   using TextureOfSet = std::pair<ImageUse, int>;   // whether of the second texture coordinates
   std::map<TextureOfSet, std::uint32_t> textures;  // glTF texture → scene texture
+  std::set<int> lost_images;                       // missing, or not to be decoded
 };
 
 // gltf.cpp: reads a .gltf or .glb into the builder.
@@ -62,6 +91,9 @@ void import_gltf(const std::string& path, Bytes bytes, SceneBuilder* builder);
 void gltf_parse(GltfFile* file, Bytes bytes);
 // Bytes of a buffer view, checked. Throws for a view that leaves its buffer.
 const std::uint8_t* gltf_view(const GltfFile& file, int view_index, std::size_t* byte_count);
+
+// gltf_compressed.cpp: makes plain buffer views of compressed ones and of compressed primitives.
+void gltf_decompress(GltfFile* file);
 
 // gltf_json.cpp: refuses invalid JSON, too deep nesting, or a number beyond float, saying where.
 void gltf_check_json(const std::string& text);
@@ -75,12 +107,17 @@ std::vector<std::uint32_t> gltf_uints(GltfFile* file, int accessor, int componen
 int gltf_component_count(const GltfFile& file, int accessor);
 std::vector<Vec3> gltf_vec3s(GltfFile* file, int accessor, const char* what, float limit = kCoordinateMax);
 
-// gltf_texture.cpp
+// gltf_texture.cpp. An image that is missing or cannot be decoded is named once and throws LostImage: the material is
+// to be read again without its textures of file->lost_images.
+struct LostImage {};
 const Image& gltf_image(GltfFile* file, int texture_index, TexelKind kind);
 // Scene texture and transform of a texture reference of the material being made.
 TextureUse gltf_texture_use(GltfFile* file, const tinygltf::TextureInfo& info, TexelKind kind = TexelKind::colors);
 // TEXCOORD set of the reference, after KHR_texture_transform.
 int gltf_uv_set(const tinygltf::TextureInfo& info);
+
+// gltf_lost.cpp: the material without textures whose images are lost.
+tinygltf::Material gltf_without_lost_textures(const GltfFile& file, const tinygltf::Material& source);
 
 // gltf_material.cpp: scene material of a glTF material (-1: the default one).
 std::uint32_t gltf_material(GltfFile* file, int material);
@@ -115,6 +152,8 @@ std::vector<MeshData> gltf_mesh(GltfFile* file, int mesh);
 
 // gltf_node.cpp: visits the default scene; fills file->nodes and file->order.
 void gltf_visit_nodes(GltfFile* file);
+// Chooses the scene's origin, and moves the nodes' transforms to it.
+void gltf_recentre(GltfFile* file);
 // Transforms of EXT_mesh_gpu_instancing; one identity without it.
 std::vector<Transform> gltf_instances(GltfFile* file, int node);
 // Translation, rotation and scale of a node without a matrix.
@@ -124,10 +163,22 @@ std::string gltf_node_name(const GltfFile& file, int node);
 // Node → the node that moves it (its index in the scene to *out_node), or → the world (kNone).
 Transform gltf_fixed_part(const GltfFile& file, int node, std::uint32_t* out_node);
 
-// gltf_animation.cpp: finds the nodes that move; makes them and their ancestors nodes of the scene; adds the
-// animations.
+// gltf_target.cpp: what a channel drives, by its path or KHR_animation_pointer. False if nothing here, with a note.
+bool gltf_target(GltfFile* file, const tinygltf::AnimationChannel& channel, GltfTarget* target);
+// "node 3 'Wheel'", "light 0"; "rotation", "colour".
+std::string gltf_target_name(const GltfFile& file, const GltfTarget& target);
+const char* gltf_path_name(ChannelPath path);
+
+// gltf_keys.cpp: fills file->drives with the channels that can be used; notes name the others.
+void gltf_read_animations(GltfFile* file);
+
+// gltf_mover.cpp: finds the nodes that move or are hidden; makes those that move, and their ancestors, nodes of the
+// scene.
 void gltf_mark_movers(GltfFile* file);
 void gltf_export_nodes(GltfFile* file);
+std::uint32_t gltf_morph_target_count(const GltfFile& file, int node);
+
+// gltf_animation.cpp: adds the animations, once everything that they drive is in the scene.
 void gltf_export_animations(GltfFile* file);
 // The node's morph weights at rest, or its mesh's, or zeros.
 std::vector<float> gltf_morph_weights(const GltfFile& file, int node, std::size_t count);

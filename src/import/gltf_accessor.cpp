@@ -58,8 +58,9 @@ Elements elements_of_view(const GltfFile& file, int view_index, std::size_t byte
   const std::uint8_t* data = gltf_view(file, view_index, &bytes);
   std::size_t own_stride = file.model.bufferViews[static_cast<std::size_t>(view_index)].byteStride;
   e.stride = strided && own_stride ? own_stride : size;
+  if (count == 0) return e;  // wherever
   bool fits = size > 0 && e.stride >= size && byte_offset <= bytes && size <= bytes - byte_offset &&
-              (count == 0 || count - 1 <= (bytes - byte_offset - size) / e.stride);
+              count - 1 <= (bytes - byte_offset - size) / e.stride;
   if (!fits)
     fail_import("%s: %zu elements do not fit into buffer view %d; export the file again", what, count, view_index);
   e.data = data + byte_offset;

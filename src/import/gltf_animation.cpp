@@ -1,77 +1,88 @@
-// Animations (sec. 3.11) and the nodes they move.
+// Animations (sec. 3.11): those that do not drive the same thing play together, as one, from the start.
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
-#include "base/limits.h"
 #include "import/gltf.h"
-#include "import/import_error.h"
+#include "scene/metallic_roughness.h"
 
 namespace pocketray {
 namespace {
 
 constexpr float kFramesPerSecond = 30;  // glTF has keys, not frames
+constexpr float kFaint = 1e-6f;         // of its brightest: what emits at times must emit always (engine/recolor.h)
 
-// False for targets that are not animated here, or not part of the scene.
-bool target_path(const GltfFile& file, const tinygltf::AnimationChannel& channel, ChannelPath* path) {
-  const char* const names[] = {"translation", "rotation", "scale", "weights"};
-  auto found = std::find(std::begin(names), std::end(names), channel.target_path);
-  if (found == std::end(names) || channel.target_node < 0) return false;
-  std::size_t node = static_cast<std::size_t>(channel.target_node);
-  if (node >= file.nodes.size())
-    fail_import("an animation moves node %zu, which does not exist; export the file again", node);
-  *path = static_cast<ChannelPath>(found - std::begin(names));
-  return file.nodes[node].visited;
-}
-
-std::uint32_t morph_target_count(const GltfFile& file, int node) {
-  int mesh = file.model.nodes[static_cast<std::size_t>(node)].mesh;
-  std::size_t count = 0;
-  if (mesh >= 0 && static_cast<std::size_t>(mesh) < file.model.meshes.size())
-    for (const tinygltf::Primitive& primitive : file.model.meshes[static_cast<std::size_t>(mesh)].primitives)
-      count = std::max(count, primitive.targets.size());
-  return static_cast<std::uint32_t>(std::min<std::size_t>(count, kMorphTargetCountMax));
-}
-
-// Key times and values of a sampler as they go into the scene. Empty times: the channel cannot be used.
-struct Keys {
-  std::vector<float> times, values;
-  Interpolation interpolation = Interpolation::linear;
+// An animation of the file with the drives that the scene can follow.
+struct Clip {
+  std::size_t animation;
+  std::vector<const GltfDrive*> drives;
+  bool plays = false;  // with the first ones
+  Animation written = {0, 0, 0};
 };
 
-bool are_sound(const Keys& keys, std::size_t width) {
-  for (std::size_t i = 0; i < keys.times.size(); ++i)
-    if (keys.times[i] < 0 || (i > 0 && keys.times[i - 1] >= keys.times[i])) return false;
-  std::size_t per_key = width * (keys.interpolation == Interpolation::cubic ? 3 : 1);
-  return !keys.times.empty() && width > 0 && keys.values.size() == keys.times.size() * per_key;
+// A light's colour and intensity make one value.
+std::pair<ChannelPath, int> driven(const GltfTarget& target) {
+  return {target.path == ChannelPath::light_scale ? ChannelPath::light_intensity : target.path, target.index};
 }
 
-Keys read_keys(GltfFile* file, const tinygltf::Animation& animation, int sampler_index, ChannelPath path) {
-  if (sampler_index < 0 || static_cast<std::size_t>(sampler_index) >= animation.samplers.size())
-    fail_import("animation sampler %d does not exist; export the file again", sampler_index);
-  const tinygltf::AnimationSampler& sampler = animation.samplers[static_cast<std::size_t>(sampler_index)];
-  Keys keys;
-  if (sampler.interpolation == "STEP") keys.interpolation = Interpolation::step;
-  if (sampler.interpolation == "CUBICSPLINE") keys.interpolation = Interpolation::cubic;
-  keys.times = gltf_floats(file, sampler.input, 1, "animation times");
-  int components = path == ChannelPath::rotation ? 4 : path == ChannelPath::weights ? 1 : 3;
-  keys.values = gltf_floats(file, sampler.output, components, "animation values");
-  return keys;
+bool drives(const Clip& clip, const GltfTarget& target) {
+  return std::any_of(clip.drives.begin(), clip.drives.end(), [&](const GltfDrive* d) {
+    return d->target.path == target.path && d->target.index == target.index;
+  });
 }
 
-void export_channel(GltfFile* file, const tinygltf::Animation& animation, const tinygltf::AnimationChannel& source) {
+std::vector<Clip> find_clips(GltfFile* file) {
+  std::vector<Clip> clips;
+  for (const GltfDrive& drive : file->drives) {
+    if (clips.empty() || clips.back().animation != drive.animation) clips.push_back({drive.animation, {}});
+    if (drives(clips.back(), drive.target))
+      note_remark(file->builder,
+                  "an animation drives " + gltf_target_name(*file, drive.target) + " twice: the first counts");
+    else
+      clips.back().drives.push_back(&drive);
+  }
+  return clips;
+}
+
+std::string clip_name(const GltfFile& file, const Clip& clip, std::size_t number) {
+  const std::string& name = file.model.animations[clip.animation].name;
+  return std::to_string(number) + (name.empty() ? "" : " '" + name.substr(0, 60) + "'");
+}
+
+// Marks the clips that play together: each that drives nothing that one before it drives.
+void choose_clips(GltfFile* file, std::vector<Clip>* clips) {
+  std::set<std::pair<ChannelPath, int>> taken;
+  std::string left_out;
+  for (std::size_t i = 0; i < clips->size(); ++i) {
+    Clip& clip = (*clips)[i];
+    clip.plays = std::none_of(clip.drives.begin(), clip.drives.end(),
+                              [&](const GltfDrive* d) { return taken.count(driven(d->target)) > 0; });
+    if (!clip.plays && left_out.size() < 200) left_out += (left_out.empty() ? "" : ", ") + clip_name(*file, clip, i);
+    for (const GltfDrive* d : clip.drives)
+      if (clip.plays) taken.insert(driven(d->target));
+  }
+  if (!left_out.empty())
+    note_remark(file->builder,
+                "animations that drive what another drives do not play: --animation chooses one (" + left_out + ")");
+}
+
+void multiply(GltfKeys* keys, float factor) {
+  for (float& value : keys->values) value *= factor;
+}
+
+// Takes the scene's origin from the values, not from the tangents.
+void move_to_origin(const Vec3d& origin, GltfKeys* keys) {
+  const std::size_t rows = keys->interpolation == Interpolation::cubic ? 3 : 1;
+  for (std::size_t row = rows / 2; row < keys->values.size() / 3; row += rows)
+    for (std::size_t c = 0; c < 3; ++c)
+      keys->values[3 * row + c] =
+          static_cast<float>(static_cast<double>(keys->values[3 * row + c]) - origin[static_cast<int>(c)]);
+}
+
+void write_channel(GltfFile* file, ChannelPath path, std::uint32_t target, const GltfKeys& keys, Animation* written) {
   SceneArrays& out = *file->builder->out;
   Channel channel = {};
-  if (!target_path(*file, source, &channel.path))
-    return note_unused(file->builder, "animation of nodes outside the scene");
-  channel.node = file->nodes[static_cast<std::size_t>(source.target_node)].out_node;
-  if (channel.node == kNone) return note_unused(file->builder, "animation of morph weights without targets");
-  std::size_t width = channel.path == ChannelPath::rotation ? 4 : 3;
-  if (channel.path == ChannelPath::weights) width = out.nodes[channel.node].weight_count;
-  Keys keys = read_keys(file, animation, source.sampler, channel.path);
-  if (!are_sound(keys, width))
-    return note_remark(file->builder, "an animation channel is skipped: its keys are unordered or too few");
-  charge_bytes(file->builder, (keys.times.size() + keys.values.size()) * sizeof(float), "the animation");
-  channel.interpolation = keys.interpolation;
+  channel.path = path, channel.node = target, channel.interpolation = keys.interpolation;
   channel.key_count = static_cast<std::uint32_t>(keys.times.size());
   // Channels of one animation mostly share their times.
   bool same = out.key_times.size() >= keys.times.size() &&
@@ -81,116 +92,175 @@ void export_channel(GltfFile* file, const tinygltf::Animation& animation, const 
   channel.key_begin = static_cast<std::uint32_t>(out.key_times.size() - keys.times.size());
   channel.value_begin = static_cast<std::uint32_t>(out.key_values.size());
   out.key_values.insert(out.key_values.end(), keys.values.begin(), keys.values.end());
-  out.animations.back().duration = std::max(out.animations.back().duration, keys.times.back());
+  written->duration = std::max(written->duration, keys.times.back());
   out.channels.push_back(channel);
-  ++out.animations.back().channel_count;
+  ++written->channel_count;
 }
 
-Vec3 column(const Transform& t, int c) { return {t.m[0][c], t.m[1][c], t.m[2][c]}; }
-
-// Rotation matrix → quaternion [Shepperd 1978].
-Quaternion quaternion_of(const Vec3& x, const Vec3& y, const Vec3& z) {
-  double m[3][3] = {{x.x, y.x, z.x}, {x.y, y.y, z.y}, {x.z, y.z, z.z}};
-  double q[4], trace = m[0][0] + m[1][1] + m[2][2];
-  int k = 0;
-  for (int i = 1; i < 3; ++i)
-    if (m[i][i] > m[k][k]) k = i;
-  if (trace > m[k][k]) {
-    q[3] = 1 + trace;
-    q[0] = m[2][1] - m[1][2], q[1] = m[0][2] - m[2][0], q[2] = m[1][0] - m[0][1];
-  } else {
-    int i = k, j = (k + 1) % 3, l = (k + 2) % 3;
-    q[i] = 1 + m[i][i] - m[j][j] - m[l][l];
-    q[j] = m[j][i] + m[i][j], q[l] = m[l][i] + m[i][l], q[3] = m[l][j] - m[j][l];
+void write_light(GltfFile* file, const GltfDrive& drive, Clip* clip) {
+  const tinygltf::Light& light = file->model.lights[static_cast<std::size_t>(drive.target.index)];
+  GltfTarget other = drive.target;
+  const bool is_color = drive.target.path == ChannelPath::light_intensity;
+  other.path = is_color ? ChannelPath::light_scale : ChannelPath::light_intensity;
+  GltfKeys keys = drive.keys;
+  ChannelPath path = drive.target.path;
+  if (is_color && !drives(*clip, other)) {
+    multiply(&keys, static_cast<float>(std::min(std::max(light.intensity, 0.0), 1e18)));
+  } else if (!is_color && !drives(*clip, other)) {
+    path = ChannelPath::light_intensity;
+    keys.values.clear();
+    for (float value : drive.keys.values)
+      for (std::size_t c = 0; c < 3; ++c)
+        keys.values.push_back(value * (light.color.size() > c ? static_cast<float>(light.color[c]) : 1));
   }
-  double n = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
-  return {static_cast<float>(q[0] / n), static_cast<float>(q[1] / n), static_cast<float>(q[2] / n),
-          static_cast<float>(q[3] / n)};
+  for (std::uint32_t index : file->lights[static_cast<std::size_t>(drive.target.index)])
+    write_channel(file, path, index, keys, &clip->written);
 }
 
-// Decomposes a matrix into translation, rotation and scale; shear is lost, with a remark.
-Node decomposed(GltfFile* file, const Transform& t) {
-  Node node;
-  node.translation = column(t, 3);
-  for (int c = 0; c < 3; ++c) node.scale[c] = length(column(t, c));
-  if (determinant(t) < 0) node.scale.x = -node.scale.x;
-  Vec3 axis[3];
-  for (int c = 0; c < 3; ++c) axis[c] = column(t, c) / node.scale[c];
-  node.rotation = quaternion_of(axis[0], axis[1], axis[2]);
-  float shear = std::fmax(std::fabs(dot(axis[0], axis[1])),
-                          std::fmax(std::fabs(dot(axis[1], axis[2])), std::fabs(dot(axis[2], axis[0]))));
-  if (shear > 1e-3f) note_remark(file->builder, "shear above an animated node is ignored");
-  return node;
+// The diffuse lobe is all that the base colour of a material makes, unless it is metal or glass.
+void write_base_color(GltfFile* file, const GltfDrive& drive, std::uint32_t index, Clip* clip) {
+  const SceneArrays& out = *file->builder->out;
+  const Material& material = out.materials[index];
+  const bool has_map = index < out.material_maps.size() && has_lobe_map(out.material_maps[index]);
+  const bool is_plain = !has_map && is_zero(material.specular_tinted) && is_zero(material.mirror_tinted) &&
+                        is_zero(material.transmission);
+  if (!is_plain) return note_unused(file->builder, "animation of the colour of metals and glass");
+  GltfKeys keys = drive.keys;
+  keys.values.clear();
+  bool fades = false;
+  for (std::size_t i = 0; i + 3 < drive.keys.values.size(); i += 4) {
+    keys.values.insert(keys.values.end(), drive.keys.values.begin() + static_cast<std::ptrdiff_t>(i),
+                       drive.keys.values.begin() + static_cast<std::ptrdiff_t>(i + 3));
+    fades |= drive.keys.interpolation != Interpolation::cubic && drive.keys.values[i + 3] != drive.keys.values[3];
+  }
+  if (fades) note_unused(file->builder, "animation of opacity");
+  write_channel(file, ChannelPath::material_diffuse, index, keys, &clip->written);
 }
 
-void export_node(GltfFile* file, int index) {
+void write_emission(GltfFile* file, const GltfDrive& drive, std::uint32_t index, Clip* clip) {
+  Material& material = file->builder->out->materials[index];
+  if (material.unlit) return note_unused(file->builder, "animation of what unlit materials emit");
+  const tinygltf::Material& source = file->model.materials[static_cast<std::size_t>(drive.target.index)];
+  const tinygltf::Value* extension = gltf_extension(source.extensions, "KHR_materials_emissive_strength");
+  GltfKeys keys = drive.keys;
+  if (extension)
+    multiply(&keys, static_cast<float>(std::min(std::max(gltf_number(*extension, "emissiveStrength", 1), 0.0), 1e18)));
+  float brightest = 0;
+  for (float value : keys.values) brightest = std::max(brightest, value);
+  const float faint = std::min(brightest, 1.0f) * kFaint;
+  if (is_zero(material.emission)) material.emission = {faint, faint, faint};
+  write_channel(file, ChannelPath::material_emission, index, keys, &clip->written);
+}
+
+void write_drive(GltfFile* file, const GltfDrive& drive, Clip* clip) {
+  const auto index = static_cast<std::size_t>(drive.target.index);
+  GltfKeys keys;
+  switch (drive.target.path) {
+    case ChannelPath::light_intensity:
+    case ChannelPath::light_scale:
+      return write_light(file, drive, clip);
+    case ChannelPath::camera_size:
+      keys = drive.keys;
+      if (file->model.cameras[index].type == "orthographic") multiply(&keys, 2);
+      for (std::uint32_t camera : file->cameras[index])
+        write_channel(file, drive.target.path, camera, keys, &clip->written);
+      return;
+    case ChannelPath::material_diffuse:
+    case ChannelPath::material_emission:
+      if (file->materials[index] == kNone) return;  // nothing has it
+      return drive.target.path == ChannelPath::material_diffuse
+                 ? write_base_color(file, drive, file->materials[index], clip)
+                 : write_emission(file, drive, file->materials[index], clip);
+    default:
+      keys = drive.keys;
+      if (drive.target.path == ChannelPath::translation && file->nodes[index].parent < 0)
+        move_to_origin(origin_of(*file->builder), &keys);
+      write_channel(file, drive.target.path, file->nodes[index].out_node, keys, &clip->written);
+  }
+}
+
+// What multiplies a light's value comes after what sets it.
+void write_clip(GltfFile* file, Clip* clip) {
+  clip->written.channel_begin = static_cast<std::uint32_t>(file->builder->out->channels.size());
+  for (const bool multiplies : {false, true})
+    for (const GltfDrive* drive : clip->drives)
+      if ((drive->target.path == ChannelPath::light_scale) == multiplies) write_drive(file, *drive, clip);
+}
+
+// Copies what fits, whole characters of UTF-8.
+template <std::size_t size>
+void copy_text(std::string text, char (&to)[size]) {
+  if (text.size() > size) {
+    std::size_t end = size - 3;
+    while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0) == 0x80) --end;
+    text = text.substr(0, end) + "…";
+  }
+  std::memset(to, 0, size);
+  std::memcpy(to, text.data(), text.size());
+}
+
+// "node 3 'Wheel' (rotation, scale), light 0 (intensity)"
+std::string drives_text(const GltfFile& file, const Clip& clip) {
+  std::vector<std::pair<std::string, std::string>> rows;  // target, paths
+  for (const GltfDrive* drive : clip.drives) {
+    const std::string target = gltf_target_name(file, drive->target), path = gltf_path_name(drive->target.path);
+    auto known = std::find_if(rows.begin(), rows.end(), [&](const auto& row) { return row.first == target; });
+    if (known == rows.end())
+      rows.emplace_back(target, path);
+    else
+      known->second += ", " + path;
+  }
+  std::string text;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const std::string more = (i ? ", " : "") + rows[i].first + " (" + rows[i].second + ")";
+    if (text.size() + more.size() > 160 && i > 0) return text + " and " + std::to_string(rows.size() - i) + " more";
+    text += more;
+  }
+  return text;
+}
+
+void add_animation(GltfFile* file, const Animation& animation, const std::string& name, const std::string& drives,
+                   bool combines) {
   SceneArrays& out = *file->builder->out;
-  GltfNode& state = file->nodes[static_cast<std::size_t>(index)];
-  require_invertible(state.local, gltf_node_name(*file, index));
-  const tinygltf::Node& source = file->model.nodes[static_cast<std::size_t>(index)];
-  Node node = source.matrix.empty() ? gltf_node_trs(*file, index) : decomposed(file, state.local);
-  if (state.parent >= 0) node.parent = file->nodes[static_cast<std::size_t>(state.parent)].out_node;
-  node.weight_begin = static_cast<std::uint32_t>(out.weights.size());
-  if (state.weights_move) {
-    node.weight_count = morph_target_count(*file, index);
-    std::vector<float> weights = gltf_morph_weights(*file, index, node.weight_count);
-    out.weights.insert(out.weights.end(), weights.begin(), weights.end());
-  }
-  state.out_node = static_cast<std::uint32_t>(out.nodes.size());
-  out.nodes.push_back(node);
+  AnimationLabel label;
+  copy_text(name, label.name), copy_text(drives, label.drives);
+  label.combines = combines;
+  out.animations.push_back(animation), out.animation_labels.push_back(label);
 }
 
 }  // namespace
 
-std::vector<float> gltf_morph_weights(const GltfFile& file, int index, std::size_t count) {
-  const tinygltf::Node& node = file.model.nodes[static_cast<std::size_t>(index)];
-  const std::vector<double>* source = &node.weights;
-  if (source->empty() && node.mesh >= 0 && static_cast<std::size_t>(node.mesh) < file.model.meshes.size())
-    source = &file.model.meshes[static_cast<std::size_t>(node.mesh)].weights;
-  std::vector<float> weights(count, 0.0f);
-  for (std::size_t i = 0; i < std::min(count, source->size()); ++i)
-    weights[i] = std::fabs((*source)[i]) <= 1e18 ? static_cast<float>((*source)[i]) : 0.0f;
-  return weights;
-}
-
-void gltf_mark_movers(GltfFile* file) {
-  for (const tinygltf::Animation& animation : file->model.animations)
-    for (const tinygltf::AnimationChannel& channel : animation.channels) {
-      ChannelPath path;
-      if (!target_path(*file, channel, &path)) continue;
-      GltfNode& node = file->nodes[static_cast<std::size_t>(channel.target_node)];
-      bool weights = path == ChannelPath::weights;
-      if (weights && morph_target_count(*file, channel.target_node) == 0) continue;
-      node.mover = channel.target_node;
-      (weights ? node.weights_move : node.moves) = true;
-    }
-  for (int index : file->order) {
-    GltfNode& node = file->nodes[static_cast<std::size_t>(index)];
-    if (node.parent < 0) continue;
-    const GltfNode& parent = file->nodes[static_cast<std::size_t>(node.parent)];
-    node.moves |= parent.moves;
-    if (node.mover < 0) node.mover = parent.mover;
-  }
-}
-
-void gltf_export_nodes(GltfFile* file) {
-  // Nodes with a channel, and joints, with all their ancestors.
-  for (auto index = file->order.rbegin(); index != file->order.rend(); ++index) {
-    GltfNode& node = file->nodes[static_cast<std::size_t>(*index)];
-    node.exported |= node.mover == *index;
-    if (node.exported && node.parent >= 0) file->nodes[static_cast<std::size_t>(node.parent)].exported = true;
-  }
-  for (int index : file->order)
-    if (file->nodes[static_cast<std::size_t>(index)].exported) export_node(file, index);
-}
-
 void gltf_export_animations(GltfFile* file) {
   SceneArrays& out = *file->builder->out;
-  if (out.nodes.empty()) return;
-  for (const tinygltf::Animation& source : file->model.animations) {
-    out.animations.push_back({static_cast<std::uint32_t>(out.channels.size()), 0, 0});
-    for (const tinygltf::AnimationChannel& channel : source.channels) export_channel(file, source, channel);
+  std::vector<Clip> clips = find_clips(file);
+  for (Clip& clip : clips) {
+    auto is_lost = [&](const GltfDrive* drive) {
+      return drive->target.path <= ChannelPath::visibility &&
+             file->nodes[static_cast<std::size_t>(drive->target.index)].out_node == kNone;
+    };
+    clip.drives.erase(std::remove_if(clip.drives.begin(), clip.drives.end(), is_lost), clip.drives.end());
   }
+  choose_clips(file, &clips);
+  for (const bool plays : {true, false})
+    for (Clip& clip : clips)
+      if (clip.plays == plays) write_clip(file, &clip);
+  clips.erase(
+      std::remove_if(clips.begin(), clips.end(), [](const Clip& clip) { return clip.written.channel_count == 0; }),
+      clips.end());
+  if (clips.empty()) return;
+  Animation together = {0, 0, 0};
+  std::string names;
+  int together_count = 0;
+  for (std::size_t i = 0; i < clips.size(); ++i) {
+    if (!clips[i].plays) continue;
+    together.channel_count += clips[i].written.channel_count;
+    together.duration = std::max(together.duration, clips[i].written.duration);
+    names += (names.empty() ? "" : ", ") + clip_name(*file, clips[i], i);
+    ++together_count;
+  }
+  if (together_count > 1) add_animation(file, together, "", names, true);
+  for (const Clip& clip : clips)
+    add_animation(file, clip.written, file->model.animations[clip.animation].name, drives_text(*file, clip), false);
   out.info.frames_per_second = kFramesPerSecond;
   double frames = static_cast<double>(out.animations[0].duration) * static_cast<double>(kFramesPerSecond);
   out.info.frame_count = static_cast<std::uint32_t>(std::min(std::max(frames + 0.5, 1.0), 1e6));

@@ -12,7 +12,8 @@ namespace {
 
 Vec3 column(const Transform& t, int c) { return {t.m[0][c], t.m[1][c], t.m[2][c]}; }
 
-void add_light(GltfFile* file, const tinygltf::Light& source, int node_index) {
+void add_light(GltfFile* file, std::size_t light_index, int node_index) {
+  const tinygltf::Light& source = file->model.lights[light_index];
   SceneArrays& out = *file->builder->out;
   if (out.lights.size() >= kLightCountMax) fail_import("more than %u lights; remove some", kLightCountMax);
   Light light;
@@ -43,6 +44,7 @@ void add_light(GltfFile* file, const tinygltf::Light& source, int node_index) {
     // Between the cones the cosine falls by 0.001 at least (KHR_lights_punctual, "Inner and Outer Cone Angles").
     light.cos_inner = static_cast<float>(std::min(std::max(det_cos(inner), det_cos(outer) + 0.001), 1.0));
   }
+  file->lights[light_index].push_back(static_cast<std::uint32_t>(out.lights.size()));
   out.lights.push_back(light);
   out.info.auto_exposure = 1;  // candela and lux: the raw numbers are too bright for any display
 }
@@ -73,12 +75,15 @@ void add_camera(GltfFile* file, int camera_index, int node_index) {
   } else {
     camera.vertical_fov = static_cast<float>(size);
   }
+  file->cameras[static_cast<std::size_t>(camera_index)].push_back(static_cast<std::uint32_t>(out.cameras.size()));
   out.cameras.push_back(camera);
 }
 
 }  // namespace
 
 void gltf_lights_and_cameras(GltfFile* file) {
+  file->lights.resize(file->model.lights.size());
+  file->cameras.resize(file->model.cameras.size());
   for (std::size_t i = 0; i < file->visible_count; ++i) {
     int index = file->order[i];
     const tinygltf::Node& node = file->model.nodes[static_cast<std::size_t>(index)];
@@ -88,7 +93,7 @@ void gltf_lights_and_cameras(GltfFile* file) {
     double light = gltf_number(*extension, "light", -1);
     if (!(light >= 0) || light >= static_cast<double>(file->model.lights.size()))
       fail_import("%s: its light does not exist; export the file again", gltf_node_name(*file, index).c_str());
-    add_light(file, file->model.lights[static_cast<std::size_t>(light)], index);
+    if (!file->nodes[static_cast<std::size_t>(index)].unseen) add_light(file, static_cast<std::size_t>(light), index);
   }
 }
 

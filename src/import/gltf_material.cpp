@@ -144,12 +144,9 @@ Grain read_grain(GltfFile* file, const tinygltf::Material& source, const Materia
 
 }  // namespace
 
-std::uint32_t gltf_material(GltfFile* file, int index) {
+static std::uint32_t read_material(GltfFile* file, int index, const tinygltf::Material& given) {
   SceneArrays& out = *file->builder->out;
-  std::uint32_t* known = index < 0 ? &file->default_material : &file->materials[static_cast<std::size_t>(index)];
-  if (*known != kNone) return *known;
   static const tinygltf::Material kDefault;
-  const tinygltf::Material& given = index < 0 ? kDefault : file->model.materials[static_cast<std::size_t>(index)];
   const bool translate = gltf_has_specular_glossiness(given);
   const tinygltf::Material translated = translate ? gltf_without_specular_glossiness(file, given) : kDefault;
   const tinygltf::Material& source = translate ? translated : given;
@@ -161,19 +158,30 @@ std::uint32_t gltf_material(GltfFile* file, int index) {
   const bool needs_uvs = material.diffuse_texture.texture != kNone || material.emission_texture.texture != kNone ||
                          has_map(maps) || has_strength(grain) || is_textured(coat);
   if (index >= 0 && needs_uvs) file->uv_sets[static_cast<std::size_t>(index)] = file->current_uv_sets;
-  *known = add_material(file->builder, material, source.name);
+  const std::uint32_t added = add_material(file->builder, material, source.name);
   if (has_map(maps)) {
-    out.material_maps.resize(*known);
+    out.material_maps.resize(added);
     out.material_maps.push_back(maps);
   }
   if (has_strength(grain)) {
-    out.grains.resize(*known);
+    out.grains.resize(added);
     out.grains.push_back(grain);
   }
   if (coat.strength > 0) {
-    out.clear_coats.resize(*known);
+    out.clear_coats.resize(added);
     out.clear_coats.push_back(coat);
   }
+  return added;
+}
+
+std::uint32_t gltf_material(GltfFile* file, int index) {
+  std::uint32_t* known = index < 0 ? &file->default_material : &file->materials[static_cast<std::size_t>(index)];
+  static const tinygltf::Material kDefault;
+  while (*known == kNone) try {
+      const tinygltf::Material& given = index < 0 ? kDefault : file->model.materials[static_cast<std::size_t>(index)];
+      *known = read_material(file, index, gltf_without_lost_textures(*file, given));
+    } catch (const LostImage&) {  // at most once for each image
+    }
   return *known;
 }
 

@@ -162,6 +162,7 @@ MeshData read_primitive(GltfFile* file, const tinygltf::Primitive& primitive, co
   mesh.name = name;
   mesh.positions = gltf_vec3s(file, attribute(primitive, "POSITION"), "POSITION");
   read_indices(file, primitive, &mesh);
+  if (mesh.indices.empty()) return mesh;
   int normals = attribute(primitive, "NORMAL"), colors = attribute(primitive, "COLOR_0");
   if (normals >= 0) {
     mesh.normals = gltf_vec3s(file, normals, "NORMAL", std::numeric_limits<float>::max());
@@ -208,7 +209,11 @@ std::vector<MeshData> gltf_mesh(GltfFile* file, int index) {
       note_unused(file->builder, "meshes without positions");
       continue;
     }
-    result.push_back(read_primitive(file, primitive, mesh_name(mesh, index)));
+    MeshData data = read_primitive(file, primitive, mesh_name(mesh, index));
+    if (data.indices.empty())
+      note_unused(file->builder, "meshes without triangles");
+    else
+      result.push_back(std::move(data));
   }
   return result;
 }

@@ -40,6 +40,17 @@ Transform local_transform(const GltfFile& file, int index) {
   return compose(trs.translation, trs.rotation, trs.scale);
 }
 
+// With the translation in double, which alone can be large for what it carries.
+ExactTransform exact_local(const GltfFile& file, int index, const Transform& local) {
+  const tinygltf::Node& node = file.model.nodes[static_cast<std::size_t>(index)];
+  ExactTransform t = exact(local);
+  for (std::size_t c = 0; c < 3; ++c) {
+    if (node.matrix.size() == 16) t.m[c][3] = node.matrix[12 + c];
+    if (node.matrix.empty() && node.translation.size() == 3) t.m[c][3] = node.translation[c];
+  }
+  return t;
+}
+
 bool is_finite_transform(const Transform& t) {
   for (const auto& row : t.m)
     for (float value : row)
@@ -58,6 +69,13 @@ void visit(GltfFile* file, int index, int parent) {
   node.parent = parent;
   node.local = local_transform(*file, index);
   node.world = parent < 0 ? node.local : file->nodes[static_cast<std::size_t>(parent)].world * node.local;
+  node.local_exactly = exact_local(*file, index, node.local);
+  node.world_exactly = parent < 0 ? node.local_exactly
+                                  : file->nodes[static_cast<std::size_t>(parent)].world_exactly * node.local_exactly;
+  if (const tinygltf::Value* extension =
+          gltf_extension(file->model.nodes[static_cast<std::size_t>(index)].extensions, "KHR_node_visibility"))
+    node.visible =
+        !extension->Has("visible") || !extension->Get("visible").IsBool() || extension->Get("visible").Get<bool>();
   if (!is_finite_transform(node.local) || !is_finite_transform(node.world))
     fail_import("%s: its transform is not finite; export the file again", gltf_node_name(*file, index).c_str());
   file->order.push_back(index);
@@ -136,6 +154,39 @@ void gltf_visit_nodes(GltfFile* file) {
         root = parents[static_cast<std::size_t>(root)];
       visit_tree(file, root);
     }
+  }
+}
+
+// The bounds of a mesh's primitives by what the file says of them.
+static void measure_mesh(const GltfFile& file, int index, ExactBox* box, std::uint64_t* triangle_count) {
+  if (index < 0 || static_cast<std::size_t>(index) >= file.model.meshes.size()) return;
+  const auto& accessors = file.model.accessors;
+  for (const tinygltf::Primitive& primitive : file.model.meshes[static_cast<std::size_t>(index)].primitives) {
+    const auto found = primitive.attributes.find("POSITION");
+    if (found == primitive.attributes.end() || static_cast<std::size_t>(found->second) >= accessors.size()) continue;
+    const tinygltf::Accessor& positions = accessors[static_cast<std::size_t>(found->second)];
+    if (positions.minValues.size() < 3 || positions.maxValues.size() < 3) continue;
+    extend(box, {positions.minValues[0], positions.minValues[1], positions.minValues[2]});
+    extend(box, {positions.maxValues[0], positions.maxValues[1], positions.maxValues[2]});
+    const bool has_indices = static_cast<std::size_t>(primitive.indices) < accessors.size();
+    *triangle_count += (has_indices ? accessors[static_cast<std::size_t>(primitive.indices)] : positions).count / 3;
+  }
+}
+
+void gltf_recentre(GltfFile* file) {
+  ExactBox bounds;
+  std::uint64_t triangle_count = 0;
+  for (std::size_t i = 0; i < file->visible_count; ++i) {
+    const GltfNode& node = file->nodes[static_cast<std::size_t>(file->order[i])];
+    ExactBox mesh;
+    measure_mesh(*file, file->model.nodes[static_cast<std::size_t>(file->order[i])].mesh, &mesh, &triangle_count);
+    if (mesh.low.x <= mesh.high.x) extend(&bounds, node.world_exactly, mesh);
+  }
+  const Vec3d origin = choose_origin(bounds, triangle_count, file->builder);
+  if (file->builder->out->origin.empty()) return;
+  for (int index : file->order) {
+    GltfNode& node = file->nodes[static_cast<std::size_t>(index)];
+    node.world = recentred(node.world_exactly, origin);
   }
 }
 

@@ -26,6 +26,11 @@ const char* const kKnownExtensions[] = {
     "KHR_materials_pbrSpecularGlossiness",
     "KHR_materials_anisotropy",
     "KHR_materials_clearcoat",
+    "KHR_node_visibility",
+    "KHR_draco_mesh_compression",
+    "EXT_meshopt_compression",
+    "EXT_texture_webp",
+    "KHR_animation_pointer",
 };
 bool is_known_extension(const std::string& name) {
   return std::any_of(std::begin(kKnownExtensions), std::end(kKnownExtensions),
@@ -103,6 +108,14 @@ void check_version_and_extensions(GltfFile* file, const Json& root) {
         note_unused(file->builder, name.get<std::string>().substr(0, 100));
 }
 
+// A buffer without bytes, in place of compressed views (EXT_meshopt_compression).
+bool is_fallback(const Json& buffer) {
+  const Json* extensions = member(buffer, "extensions");
+  const Json* extension = extensions ? member(*extensions, "EXT_meshopt_compression") : nullptr;
+  const Json* fallback = extension ? member(*extension, "fallback") : nullptr;
+  return fallback && fallback->is_boolean() && fallback->get<bool>();
+}
+
 // Fetches the buffers; afterwards every buffer has at least its stated bytes (sec. 3.6.1.1).
 void fetch_buffers(GltfFile* file, const Json& root) {
   const Json* buffers = member(root, "buffers");
@@ -118,6 +131,8 @@ void fetch_buffers(GltfFile* file, const Json& root) {
     tinygltf::Buffer buffer;
     if (!uri.empty()) {
       buffer.data = read_uri(file->path, uri, file->builder->options.byte_count_max, &file->builder->files);
+    } else if (is_fallback(entry)) {
+      promised = 0;
     } else if (i == 0 && file->has_binary_chunk) {
       buffer.data.swap(file->binary_chunk);
     } else {
@@ -161,7 +176,18 @@ void drop_textures(const std::vector<bool>& has_image, Json* value, bool* droppe
     }
   }
 }
+// An image that only EXT_texture_webp names becomes the texture's own.
+void use_webp_images(Json* textures) {
+  for (Json& texture : *textures) {
+    const Json* extensions = member(texture, "extensions");
+    const Json* webp = extensions ? member(*extensions, "EXT_texture_webp") : nullptr;
+    const Json* source = webp ? member(*webp, "source") : nullptr;
+    if (source && texture.is_object() && !texture.contains("source")) texture["source"] = *source;
+  }
+}
 void drop_textures_without_image(GltfFile* file, Json* root) {
+  auto listed = root->find("textures");
+  if (listed != root->end() && listed->is_array()) use_webp_images(&*listed);
   const Json* textures = member(*root, "textures");
   auto materials = root->find("materials");
   if (!textures || !textures->is_array() || materials == root->end() || !materials->is_structured()) return;
@@ -169,7 +195,43 @@ void drop_textures_without_image(GltfFile* file, Json* root) {
   for (const Json& texture : *textures) has_image.push_back(member(texture, "source") != nullptr);
   bool dropped = false;
   drop_textures(has_image, &*materials, &dropped);
-  if (dropped) note_unused(file->builder, "textures in other formats than PNG and JPEG");
+  if (dropped) note_unused(file->builder, "textures in other formats than PNG, JPEG and WebP");
+}
+
+// The library wants indices to lie in a view, those of compressed primitives as well; gltf_decompress() replaces it.
+void complete_compressed_indices(Json* root) {
+  auto meshes = root->find("meshes"), accessors = root->find("accessors");
+  if (meshes == root->end() || accessors == root->end() || !meshes->is_array() || !accessors->is_array()) return;
+  for (const Json& mesh : *meshes) {
+    const Json* primitives = member(mesh, "primitives");
+    if (!primitives || !primitives->is_array()) continue;
+    for (const Json& primitive : *primitives) {
+      const Json *extensions = member(primitive, "extensions"), *indices = member(primitive, "indices");
+      const Json* extension = extensions ? member(*extensions, "KHR_draco_mesh_compression") : nullptr;
+      const Json* view = extension ? member(*extension, "bufferView") : nullptr;
+      if (!view || !indices || !indices->is_number_unsigned() || indices->get<std::uint64_t>() >= accessors->size())
+        continue;
+      Json& accessor = (*accessors)[indices->get<std::size_t>()];
+      if (accessor.is_object() && !accessor.contains("bufferView")) accessor["bufferView"] = *view;
+    }
+  }
+}
+
+// The library wants every channel to name a node; those of KHR_animation_pointer have none, and others are to be
+// ignored (sec. 3.11).
+void complete_channels(Json* root) {
+  auto animations = root->find("animations");
+  if (animations == root->end() || !animations->is_array()) return;
+  for (Json& animation : *animations) {
+    auto channels = animation.is_object() ? animation.find("channels") : animation.end();
+    if (!animation.is_object() || channels == animation.end() || !channels->is_array()) continue;
+    for (Json& channel : *channels) {
+      auto target = channel.is_object() ? channel.find("target") : channel.end();
+      if (!channel.is_object() || target == channel.end() || !target->is_object() || target->contains("node")) continue;
+      if (string_member(*target, "path") != "pointer") (*target)["path"] = "none";
+      (*target)["node"] = 0;
+    }
+  }
 }
 
 }  // namespace
@@ -201,6 +263,8 @@ void gltf_parse(GltfFile* file, Bytes bytes) {
   fetch_buffers(file, root);
   list_images(file, root);
   drop_textures_without_image(file, &root);
+  complete_channels(&root);
+  complete_compressed_indices(&root);
 
   std::vector<tinygltf::Buffer> buffers;
   std::vector<tinygltf::Image> images;

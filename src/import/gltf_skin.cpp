@@ -24,6 +24,14 @@ std::vector<Transform> inverse_binds(GltfFile* file, const tinygltf::Skin& skin)
   return result;
 }
 
+// A joint without volume leaves none to what follows it (HARDCASES row 70).
+Transform joint_world(const GltfNode& joint) {
+  Transform world = joint.world;
+  if (joint.flat || joint.unseen)
+    for (auto& row : world.m) row[0] = row[1] = row[2] = 0;
+  return world;
+}
+
 // Σ weight · joint matrix (sec. 3.7.3.3).
 Transform blended(const std::vector<Transform>& joints, const SkinWeight& weight) {
   Transform sum = {{{0}}};
@@ -49,8 +57,8 @@ void gltf_mark_joints(GltfFile* file) {
   for (std::size_t i = 0; i < file->visible_count; ++i) {
     const tinygltf::Node& node = file->model.nodes[static_cast<std::size_t>(file->order[i])];
     if (node.skin < 0 || node.mesh < 0) continue;
-    bool moves =
-        gltf_skin_moves(*file, node.skin) || file->nodes[static_cast<std::size_t>(file->order[i])].weights_move;
+    const GltfNode& state = file->nodes[static_cast<std::size_t>(file->order[i])];
+    bool moves = gltf_skin_moves(*file, node.skin) || state.weights_move || state.visibility_moves;
     if (!moves) continue;
     for (int joint : gltf_joints(*file, node.skin)) file->nodes[static_cast<std::size_t>(joint)].exported = true;
   }
@@ -79,7 +87,7 @@ std::vector<Transform> gltf_skin_transforms(GltfFile* file, int skin_index) {
   const std::vector<int>& joints = gltf_joints(*file, skin_index);
   std::vector<Transform> result = inverse_binds(file, skin_at(*file, skin_index));
   for (std::size_t j = 0; j < joints.size(); ++j)
-    result[j] = file->nodes[static_cast<std::size_t>(joints[j])].world * result[j];
+    result[j] = joint_world(file->nodes[static_cast<std::size_t>(joints[j])]) * result[j];
   return result;
 }
 

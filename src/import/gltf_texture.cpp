@@ -75,8 +75,14 @@ void pair_of(const tinygltf::Value& object, const char* key, double* x, double* 
 const Image& gltf_image(GltfFile* file, int texture_index, TexelKind kind) {
   const GltfFile::ImageUse use = {texture_at(*file, texture_index).source, kind};
   auto known = file->images.find(use);
-  if (known == file->images.end()) known = file->images.emplace(use, load_image(file, use.first, kind)).first;
-  return known->second;
+  if (known != file->images.end()) return known->second;
+  try {
+    return file->images.emplace(use, load_image(file, use.first, kind)).first->second;
+  } catch (const ImportError& error) {
+    if (!file->lost_images.insert(use.first).second) throw;
+    note_remark(file->builder, std::string("a texture is missing: ") + error.what());
+    throw LostImage();
+  }
 }
 
 int gltf_uv_set(const tinygltf::TextureInfo& info) {

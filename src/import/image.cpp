@@ -7,6 +7,7 @@
 #include "base/color.h"
 #include "base/limits.h"
 #include "import/import_error.h"
+#include "import/webp.h"
 
 #define STBI_ONLY_PNG
 #define STBI_ONLY_JPEG
@@ -23,6 +24,7 @@ namespace pocketray {
 static_assert(STBI_MAX_DIMENSIONS == kTextureSideMax, "one limit");
 
 static Image decode(const Bytes& bytes, const std::string& name, std::uint64_t texel_count_max) {
+  if (is_webp(bytes)) return decode_webp(bytes, name, texel_count_max);
   int width = 0, height = 0, channels = 0, size = static_cast<int>(bytes.size());
   if (bytes.size() > 1u << 30 || !stbi_info_from_memory(bytes.data(), size, &width, &height, &channels))
     fail_import("%s is not a PNG, JPEG, TGA or BMP image; convert it", name.c_str());

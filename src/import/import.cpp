@@ -36,8 +36,30 @@ void import_by_assimp(const std::string& path, const std::string& ending, const 
       [&](ImportedScene* imported) {
         SceneBuilder builder;
         builder.options = options;
+        builder.files.root = options.root;
         note_file(&builder.files, path);
         import_assimp(path, ending, bytes, &builder);
+        finish_scene(&builder, path_stem(path), imported);
+      },
+      result);
+}
+
+// Draco's decoder trusts the counts in its data, so it runs in a child process, too.
+bool names_draco(const Bytes& bytes) {
+  constexpr char kName[] = "KHR_draco_mesh_compression";
+  return std::search(bytes.begin(), bytes.end(), std::begin(kName), std::end(kName) - 1) != bytes.end();
+}
+void import_by_draco(const std::string& path, const Bytes& bytes, const ImportOptions& options, ImportedScene* result) {
+  const ContainerLimits limits = {2 * options.byte_count_max + (std::uint64_t(256) << 20), options.cpu_seconds_max,
+                                  10 * options.cpu_seconds_max, 2 * options.byte_count_max};
+  import_contained(
+      limits,
+      [&](ImportedScene* imported) {
+        SceneBuilder builder;
+        builder.options = options;
+        builder.files.root = options.root;
+        note_file(&builder.files, path);
+        import_gltf(path, bytes, &builder);
         finish_scene(&builder, path_stem(path), imported);
       },
       result);
@@ -46,6 +68,7 @@ void import_by_assimp(const std::string& path, const std::string& ending, const 
 void import_any(const std::string& path, const ImportOptions& options, ImportedScene* result) {
   std::string ending = path_ending(path);
   FilesRead files;
+  files.root = options.root;
   Bytes bytes = read_file(path, options.byte_count_max, &files);
   if (bytes.empty()) fail_import("the file is empty");
   bool gltf = is_gltf(ending, bytes);
@@ -55,6 +78,7 @@ void import_any(const std::string& path, const ImportOptions& options, ImportedS
     if (ending == "pray") fail_import("it is baked already; bake the model it was made from");
     fail_import("no reader for '.%.20s' files; convert to one of: %s", ending.c_str(), import_formats().c_str());
   }
+  if (gltf && names_draco(bytes)) return import_by_draco(path, bytes, options, result);
   SceneBuilder builder;
   builder.options = options;
   builder.files = std::move(files);

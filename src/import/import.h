@@ -21,6 +21,9 @@ struct ImportOptions {
   float crease_angle = 40;               // degrees; meshes without normals are smoothed below it (glTF: flat)
   bool strict = false;                   // refuse vertices that are not finite instead of leaving out their faces
   UpAxis up = UpAxis::of_format;         // of formats that do not say: OBJ, PLY, STL, OFF
+  bool animations = true;                // false: the model at rest
+  // Files that the model names lie below this folder, which the model lies below, too. Empty: the model's own folder.
+  std::string root;
   std::uint64_t byte_count_max = std::uint64_t(1) << 30;  // refuses larger scenes
   std::uint32_t cpu_seconds_max = 120;                    // for formats read by assimp, which is stopped then
 };

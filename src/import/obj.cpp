@@ -5,6 +5,7 @@
 #include <unordered_map>
 
 #include "base/color.h"
+#include "import/exact.h"
 #include "import/import_error.h"
 #include "import/normals.h"
 #include "import/obj_file.h"
@@ -89,7 +90,9 @@ std::uint16_t linear_16(float srgb) {
 // Finds or makes the vertex of a corner: OBJ indexes positions, normals and texture coordinates separately.
 class CornerIndex {
  public:
-  explicit CornerIndex(const ObjFile& file) : file_(file), head_(file.positions.size() / 3, kNone) {}
+  // Positions are stored relative to `origin`.
+  CornerIndex(const ObjFile& file, const Vec3d& origin)
+      : file_(file), origin_(origin), head_(file.positions.size() / 3, kNone) {}
 
   void begin_mesh() {
     for (const ObjCorner& corner : corners_)
@@ -109,8 +112,8 @@ class CornerIndex {
     corners_.push_back(corner);
     next_.push_back(head_[p]);
     head_[p] = made;
-    const float* v = &file_.positions[3 * p];
-    mesh->positions.push_back({v[0], v[1], v[2]});
+    const double* v = &file_.positions[3 * p];
+    mesh->positions.push_back(to_float(Vec3d{v[0], v[1], v[2]} - origin_));
     if (normals) {
       const float* n = corner.normal >= 0 ? &file_.normals[3 * static_cast<std::size_t>(corner.normal)] : nullptr;
       mesh->normals.push_back(n ? normalize(Vec3{n[0], n[1], n[2]}) : Vec3{0, 0, 0});
@@ -128,6 +131,7 @@ class CornerIndex {
 
  private:
   const ObjFile& file_;
+  Vec3d origin_;
   std::vector<std::uint32_t> head_, next_;  // chains of vertices that share a position
   std::vector<ObjCorner> corners_;
 };
@@ -204,12 +208,22 @@ std::vector<std::uint32_t> find_materials(const ObjFile& file, const std::vector
   return found;
 }
 
+// The scene's origin in the file's coordinates; zero where the model is near.
+Vec3d choose_origin(const ObjFile& file, const Transform& turn, SceneBuilder* builder) {
+  ExactBox bounds;
+  for (std::size_t i = 0; i < file.positions.size(); i += 3)
+    extend(&bounds, {file.positions[i], file.positions[i + 1], file.positions[i + 2]});
+  return choose_origin(bounds, turn, 2 * (file.positions.size() / 3), builder);  // a mesh has two triangles per vertex
+}
+
 }  // namespace
 
 void import_obj(const std::string& path, Bytes bytes, SceneBuilder* builder) {
   require_bytes(*builder, bytes.size(), 8, "the OBJ text");
   tidy_obj_text(&bytes);
   const ObjFile file = read_obj_file(bytes, *builder);
+  const Transform turn = upright(builder, UpAxis::y, "OBJ");
+  const Vec3d origin = choose_origin(file, turn, builder);
   const std::vector<MtlMaterial> sources = MaterialFiles(path, builder).read(file);
   for (const MtlMaterial& source : sources) add_obj_material(builder, path, source);
   const std::uint32_t default_material = static_cast<std::uint32_t>(builder->out->materials.size());
@@ -219,7 +233,7 @@ void import_obj(const std::string& path, Bytes bytes, SceneBuilder* builder) {
   if (file.has_lines) note_unused(builder, "lines");
   if (file.has_points) note_unused(builder, "points");
   for (const std::string& statement : file.unknown) note_unused(builder, "'" + statement.substr(0, 40) + "'");
-  CornerIndex index(file);
+  CornerIndex index(file, origin);
   bool default_used = false;
   for (const ObjShape& shape : file.shapes) {
     std::vector<std::uint32_t> groups;
@@ -228,7 +242,7 @@ void import_obj(const std::string& path, Bytes bytes, SceneBuilder* builder) {
     if (mesh.normals.empty()) smooth_normals(&mesh, builder->options.crease_angle, file.has_groups ? &groups : nullptr);
     tidy_mesh(&mesh);
     begin_part(builder, shape.name);
-    append_mesh(builder, mesh, upright(builder, UpAxis::y, "OBJ"));
+    append_mesh(builder, mesh, turn);
   }
   if (!default_used && default_material > 0) builder->out->materials.pop_back();
 }

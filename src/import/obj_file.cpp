@@ -46,14 +46,25 @@ class Reader {
     return line.number(word, limit);
   }
 
+  double coordinate(const ObjLine& line, const ObjWord& word) const {
+    double number;
+    const bool is_valid = read_number(word, &number) && std::fabs(number) <= static_cast<double>(kCoordinateMax);
+    return is_valid ? number : static_cast<double>(value(line, word, kCoordinateMax));
+  }
+
   void read_vertex(ObjLine* line) {
+    double place[3] = {};
     float values[7] = {};
     int count = 0;
     ObjWord word;
-    for (; line->next(&word); ++count)
-      if (count < 7) values[count] = value(*line, word, count < 3 ? kCoordinateMax : kFloatMax);
+    for (; line->next(&word); ++count) {
+      if (count < 3)
+        place[count] = coordinate(*line, word);
+      else if (count < 7)
+        values[count] = value(*line, word, kFloatMax);
+    }
     if (count < 3) line->refuse("a vertex has three coordinates");
-    file_.positions.insert(file_.positions.end(), values, values + 3);
+    file_.positions.insert(file_.positions.end(), place, place + 3);
     // x y z r g b, or x y z w r g b
     const float* color = count >= 7 ? values + 4 : values + 3;
     if (count >= 6) file_.colors.insert(file_.colors.end(), color, color + 3);

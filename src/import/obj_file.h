@@ -29,8 +29,9 @@ struct ObjShape {
 };
 
 struct ObjFile {
-  std::vector<float> positions, colors, normals;  // three each; NaN where the file's number is not finite
-  std::vector<float> uvs;                         // two each
+  std::vector<double> positions;       // three each; NaN where the file's number is not finite
+  std::vector<float> colors, normals;  // three each
+  std::vector<float> uvs;              // two each
   std::vector<ObjCorner> corners;
   std::vector<ObjFace> faces;
   std::vector<ObjShape> shapes;

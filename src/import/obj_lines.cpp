@@ -39,7 +39,7 @@ bool ObjWord::is(const char* other) const {
   return std::strlen(other) == size && std::memcmp(begin, other, size) == 0;
 }
 
-bool read_number(const ObjWord& word, float* value) {
+bool read_number(const ObjWord& word, double* value) {
   const char* whole = after_sign(word.begin, word.end);
   const char* at = after_digits(whole, word.end);
   std::ptrdiff_t digit_count = at - whole;
@@ -54,7 +54,14 @@ bool read_number(const ObjWord& word, float* value) {
     const char* exponent = after_sign(at + 1, word.end);
     if (exponent == word.end || after_digits(exponent, word.end) != word.end) return false;
   }
-  *value = static_cast<float>(value_of(word));
+  *value = value_of(word);
+  return true;
+}
+
+bool read_number(const ObjWord& word, float* value) {
+  double exact;
+  if (!read_number(word, &exact)) return false;
+  *value = static_cast<float>(exact);
   return true;
 }
 

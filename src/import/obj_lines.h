@@ -38,6 +38,7 @@ class ObjLine {
 };
 
 // True if the word is a decimal number, [+-]digits[.digits][e[+-]digits]; stores it, infinite if it is too large.
+bool read_number(const ObjWord& word, double* value);
 bool read_number(const ObjWord& word, float* value);
 // True if the word says NaN, infinity or a number too large for a float.
 bool is_not_finite(const ObjWord& word);

@@ -6,6 +6,7 @@
 #include "base/check.h"
 #include "base/color.h"
 #include "base/limits.h"
+#include "import/exact.h"
 #include "import/image.h"
 #include "import/import_error.h"
 #include "import/normals.h"
@@ -97,7 +98,8 @@ double slot_value(const PlyProperty& property, Slot slot, PlyNumbers* numbers) {
   return numbers->next(*property.value) / (is_color ? largest(*property.value) : 1);
 }
 
-void read_vertices(const PlyElement& element, SceneBuilder* builder, PlyNumbers* numbers, MeshData* mesh) {
+void read_vertices(const PlyElement& element, const Transform& turn, SceneBuilder* builder, PlyNumbers* numbers,
+                   MeshData* mesh) {
   if (!mesh->positions.empty()) fail_import("the PLY file has two vertex elements; export the file again");
   require_bytes(*builder, element.count, 64, "the geometry");
   bool has[kSlotCount + 1] = {};
@@ -109,6 +111,7 @@ void read_vertices(const PlyElement& element, SceneBuilder* builder, PlyNumbers*
   if (!has[kX] || !has[kY] || !has[kZ]) fail_import("the PLY file has vertices without x, y, z; export the file again");
   bool normals = has[kNormalX] && has[kNormalY] && has[kNormalZ], colors = has[kRed] && has[kGreen] && has[kBlue];
   const bool uvs = has[kU] && has[kV], strict = builder->options.strict;
+  std::vector<Vec3d> exactly;
   for (std::uint64_t i = 0; i < element.count; ++i) {
     double values[kSlotCount] = {};
     values[kAlpha] = 1;
@@ -120,6 +123,7 @@ void read_vertices(const PlyElement& element, SceneBuilder* builder, PlyNumbers*
         values[slots[p]] = slot_value(property, slots[p], numbers);
     }
     mesh->positions.push_back(checked(values, kX, static_cast<double>(kCoordinateMax), "position", i, strict));
+    exactly.push_back({values[kX], values[kY], values[kZ]});
     if (normals) {
       const Vec3 normal = normalize(checked(values, kNormalX, kFloatMax, "normal", i, strict));
       mesh->normals.push_back(is_finite(normal) ? normal : Vec3{0, 0, 0});
@@ -129,6 +133,7 @@ void read_vertices(const PlyElement& element, SceneBuilder* builder, PlyNumbers*
     checked(values, kRed, kFloatMax, "colour", i, strict);
     mesh->colors.push_back(color_of(values));
   }
+  recentre(exactly, turn, 2 * element.count, builder, &mesh->positions);  // a mesh has two triangles per vertex
 }
 
 // The vertices of a face or strip as they come, with kNone for the -1 that restarts a strip.
@@ -262,6 +267,7 @@ std::uint32_t add_materials(const std::string& path, const PlyHeader& header, Sc
 
 void import_ply(const std::string& path, const Bytes& bytes, SceneBuilder* builder) {
   const PlyHeader header = read_ply_header(bytes);
+  const Transform turn = upright(builder, header.is_upright ? UpAxis::y : UpAxis::z, "PLY");
   PlyNumbers numbers(bytes, header);
   MeshData mesh;
   mesh.name = "the PLY file";
@@ -269,7 +275,7 @@ void import_ply(const std::string& path, const Bytes& bytes, SceneBuilder* build
   for (const PlyElement& element : header.elements) {
     if (element.properties.empty()) continue;
     if (element.name == "vertex")
-      read_vertices(element, builder, &numbers, &mesh);
+      read_vertices(element, turn, builder, &numbers, &mesh);
     else if (element.name == "face")
       read_faces(element, header, builder, &numbers, &faces);
     else if (element.name == "tristrips")
@@ -288,7 +294,7 @@ void import_ply(const std::string& path, const Bytes& bytes, SceneBuilder* build
   append_faces(faces, &mesh, builder);
   tidy_mesh(&mesh);
   if (mesh.normals.empty()) smooth_normals(&mesh, builder->options.crease_angle);
-  append_mesh(builder, mesh, upright(builder, header.is_upright ? UpAxis::y : UpAxis::z, "PLY"));
+  append_mesh(builder, mesh, turn);
 }
 
 }  // namespace pocketray

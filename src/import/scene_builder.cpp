@@ -5,6 +5,7 @@
 
 #include "base/check.h"
 #include "base/limits.h"
+#include "import/exact.h"
 #include "import/import_error.h"
 #include "import/tangents.h"
 #include "scene/animate.h"
@@ -21,7 +22,7 @@ void note_remark(SceneBuilder* builder, const std::string& what) { add_once(&bui
 
 void require_bytes(const SceneBuilder& builder, std::uint64_t count, std::uint64_t element_bytes, const char* what) {
   std::uint64_t max = builder.options.byte_count_max, left = max - std::min(builder.bytes_charged, max);
-  if (count > left / element_bytes)
+  if (element_bytes > 0 && count > left / element_bytes)
     fail_import("%s would take the scene beyond %llu MiB; use a smaller model", what,
                 static_cast<unsigned long long>(max >> 20));
 }
@@ -128,7 +129,8 @@ void require_finite(const Vec3& p, const std::string& mesh_name, const SceneBuil
   if (builder.options.strict) require_coordinate(p, mesh_name);
 }
 
-void append_mesh(SceneBuilder* builder, const MeshData& mesh, const Transform& to_world) {
+void append_mesh(SceneBuilder* builder, const MeshData& mesh, const Transform& to_world,
+                 const ExactTransform* exactly) {
   SceneArrays& out = *builder->out;
   std::size_t begin = out.positions.size(), count = mesh.positions.size(), triangle_count = mesh.indices.size() / 3;
   if (count == 0) return;
@@ -137,9 +139,12 @@ void append_mesh(SceneBuilder* builder, const MeshData& mesh, const Transform& t
   if (out.triangles.size() + triangle_count > kTriangleCountMax)
     fail_import("more than %u triangles; simplify the model", kTriangleCountMax);
 
+  const bool is_recentred = exactly && !out.origin.empty();
+  const Vec3d origin = origin_of(*builder);
   out.positions.reserve(begin + count > out.positions.capacity() ? std::max(begin + count, begin * 3 / 2) : 0);
   for (std::size_t i = 0; i < count; ++i) {
-    Vec3 p = transform_point(to_world, mesh.positions[i]);
+    Vec3 p = is_recentred ? to_float(transform_point(*exactly, to_double(mesh.positions[i])) - origin)
+                          : transform_point(to_world, mesh.positions[i]);
     require_coordinate(p, mesh.name);
     out.positions.push_back(p);
   }
@@ -251,7 +256,11 @@ static bool has_texture(const Material& material) {
 
 void finish_scene(SceneBuilder* builder, const std::string& name, ImportedScene* result) {
   SceneArrays& out = *builder->out;
-  if (out.triangles.empty()) fail_import("no triangles to render; export meshes with faces");
+  if (out.triangles.empty()) {
+    const std::string why = warning_line(*builder);
+    fail_import("no triangles to render; export meshes with faces%s%s%s", why.empty() ? "" : " (", why.c_str(),
+                why.empty() ? "" : ")");
+  }
   if (out.materials.empty()) out.materials.emplace_back();
   std::size_t count = out.positions.size();
   if (!out.normals.empty()) out.normals.resize(count, Vec3{0, 0, 0});
@@ -291,6 +300,8 @@ void finish_scene(SceneBuilder* builder, const std::string& name, ImportedScene*
   scene.rest_positions = view(out.rest_positions), scene.rest_normals = view(out.rest_normals);
   scene.skin_weights = view(out.skin_weights);
   scene.morph_positions = view(out.morph_positions), scene.morph_normals = view(out.morph_normals);
+  scene.animation_labels = view(out.animation_labels), scene.node_visible = view(out.node_visible);
+  scene.origin = view(out.origin);
   Status status = validate_scene(scene);
   if (!status.ok) fail_import("%s", status.message);
   pose_at_start(scene, *builder);

@@ -61,6 +61,9 @@ struct SceneArrays {
   std::vector<Vec3> rest_positions, rest_normals;
   std::vector<SkinWeight> skin_weights;
   std::vector<Vec3> morph_positions, morph_normals;
+  std::vector<AnimationLabel> animation_labels;
+  std::vector<std::uint8_t> node_visible;
+  std::vector<SceneOrigin> origin;  // one, or none; see exact.h
 };
 
 // A part of the model; the meshes appended until the next part begins are its own.
@@ -100,8 +103,11 @@ std::uint32_t begin_part(SceneBuilder* builder, const std::string& name, std::ui
 void tidy_mesh(MeshData* mesh);
 
 // Appends the tidied mesh in world space. A mirroring transform flips the winding. A vertex that is not finite or
-// beyond kCoordinateMax is refused.
-void append_mesh(SceneBuilder* builder, const MeshData& mesh, const Transform& to_world);
+// beyond kCoordinateMax is refused. `exactly`: the transform before rounding and before the scene's origin is
+// subtracted, where there is one; null: `to_world` is exact.
+struct ExactTransform;
+void append_mesh(SceneBuilder* builder, const MeshData& mesh, const Transform& to_world,
+                 const ExactTransform* exactly = nullptr);
 
 // Appends the tidied mesh as a moving one: world-space vertices by `to_world` (its transform at time 0), and the rest
 // pose. Fills the array ranges of `moving`; the caller sets node, skin and instance.

@@ -16,11 +16,13 @@ struct NodeOverride {
 struct Pose {
   Array<Vec3> positions;                // world space; empty when no vertex moves: use Scene::positions
   Array<Vec3> normals;                  // world space; empty when no vertex moves or the scene has none
-  Array<Transform> nodes;               // node → world
+  Array<Transform> nodes;               // node → world; without extent where the node is hidden
+  Array<std::uint8_t> visible;          // one per node: it and all above it are
   Array<Light> lights;                  // world space; their node is kNone
   Array<Camera> cameras;                // world space; their node is kNone
   Array<Node> local_nodes;              // as the animation sets them, relative to their parents
   Array<float> weights;                 // as the animation sets them
+  Array<Material> materials;            // as the animation sets them; empty: it sets none
   Array<Transform> joints;              // rest pose → world, one per Scene::joints
   Array<const NodeOverride> overrides;  // one per node, from the caller; empty: only the animation moves nodes
 };
@@ -29,10 +31,14 @@ struct Pose {
 std::size_t pose_need(const Scene& scene);
 // Allocates and poses animation 0 at time 0, without overrides; call once. For a static scene all arrays stay empty.
 Pose make_pose(const Scene& scene, Arena* arena);
-// Evaluates animation `animation_index` at `seconds` into `pose`, overwriting it. Time wraps at the animation's
-// duration, so the duration itself shows time 0. A channel holds its first key's value before it and its last key's
-// value after it. Coordinates are clamped to ±kCoordinateMax, so a pose is always finite. Allocates nothing; does
-// nothing for a static scene.
+// Evaluates animation `animation_index`, kNone for the pose at rest, at `seconds` into `pose`, overwriting it. Time
+// wraps at the animation's duration, so the duration itself shows time 0. A channel holds its first key's value before
+// it and its last key's value after it. A node that is not visible, or whose scale is 0 along any axis, has no volume:
+// everything below it shrinks to a point, which no ray hits (HARDCASES row 70). Coordinates are clamped to
+// ±kCoordinateMax, so a pose is always finite. Allocates nothing; does nothing for a static scene.
 void pose_at(const Scene& scene, std::uint32_t animation_index, double seconds, Pose* pose);
+
+// Whether a channel sets a material.
+bool animates_materials(const Scene& scene);
 
 }  // namespace pocketray

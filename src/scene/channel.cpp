@@ -80,6 +80,22 @@ void slerp(const float* a, const float* b, double t, double* result) {
 
 }  // namespace
 
+std::uint32_t channel_width(const Scene& scene, const Channel& channel) {
+  switch (channel.path) {
+    case ChannelPath::rotation:
+      return 4;
+    case ChannelPath::weights:
+      CHECK_LT(channel.node, scene.nodes.count);
+      return scene.nodes[channel.node].weight_count;
+    case ChannelPath::visibility:
+    case ChannelPath::light_scale:
+    case ChannelPath::camera_size:
+      return 1;
+    default:
+      return 3;
+  }
+}
+
 void channel_value(const Scene& scene, const Channel& channel, double time, std::uint32_t width, float* value) {
   CHECK_GT(width, 0u);
   KeyPosition at = find_key(scene, channel, time);

@@ -180,13 +180,27 @@ struct Node {
   std::uint32_t weight_begin = 0, weight_count = 0;  // morph weights in Scene::weights
 };
 
-enum class ChannelPath : std::uint8_t { translation, rotation, scale, weights };
+// Those up to `visibility` are of a node. light_intensity sets a light's intensity, light_scale multiplies it;
+// camera_size is the vertical field of view, or the vertical extent of an orthographic camera.
+enum class ChannelPath : std::uint8_t {
+  translation,
+  rotation,
+  scale,
+  weights,
+  visibility,
+  light_intensity,
+  light_scale,
+  camera_size,
+  material_diffuse,
+  material_emission
+};
+constexpr int kChannelPathCount = 10;
 enum class Interpolation : std::uint8_t { step, linear, cubic };  // cubic: in-tangent, value, out-tangent for each key
 
 struct Channel {
-  std::uint32_t node;
+  std::uint32_t node;                  // or the light, camera or material, by `path`
   std::uint32_t key_begin, key_count;  // in Scene::key_times; seconds, strictly increasing
-  std::uint32_t value_begin;           // in Scene::key_values; 3, 4 or weight_count floats per key, × 3 if cubic
+  std::uint32_t value_begin;           // in Scene::key_values; 1, 3, 4 or weight_count floats per key, × 3 if cubic
   ChannelPath path;
   Interpolation interpolation;
   std::uint16_t reserved = 0;
@@ -195,6 +209,17 @@ struct Channel {
 struct Animation {
   std::uint32_t channel_begin, channel_count;
   float duration;  // seconds; time wraps here
+};
+
+// An animation for people: its name and what it drives. Not terminated if full.
+struct AnimationLabel {
+  char name[64], drives[188];
+  std::uint32_t combines;  // 1: it plays others of the scene together, and has no number of its own
+};
+
+// Where the scene's origin lies in the model's own coordinates.
+struct SceneOrigin {
+  double x, y, z;
 };
 
 struct Joint {
@@ -287,13 +312,16 @@ struct Scene {
   Array<const Grain> grains;                      // one per material, or empty
   // One per vertex, or empty: the tangent of the frame of maps; none: the triangle's own, see shade/normal_map.h.
   Array<const PackedTangent> tangents;
-  Array<const Vec2> second_uvs;           // one per vertex, or empty: coordinates of the textures of that set
-  Array<const ClearCoat> clear_coats;     // one per material, or empty
-  Array<const DefaultView> default_view;  // one, or none: measured at the start where it is needed
+  Array<const Vec2> second_uvs;                  // one per vertex, or empty: coordinates of the textures of that set
+  Array<const ClearCoat> clear_coats;            // one per material, or empty
+  Array<const DefaultView> default_view;         // one, or none: measured at the start where it is needed
+  Array<const AnimationLabel> animation_labels;  // one per animation, or empty
+  Array<const std::uint8_t> node_visible;        // one per node, or empty: all are, except as channels say
+  Array<const SceneOrigin> origin;               // one, or none: 0
 };
 
 inline bool is_animated(const Scene& scene) {
-  return scene.animations.count > 0 && scene.moving_meshes.count + scene.nodes.count > 0;
+  return scene.animations.count > 0 && scene.moving_meshes.count + scene.nodes.count + scene.channels.count > 0;
 }
 
 }  // namespace pocketray

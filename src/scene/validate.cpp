@@ -217,6 +217,14 @@ Status validate_lights_and_cameras(const Scene& scene) {
   return success();
 }
 
+static Status validate_origin(const Scene& scene) {
+  if (scene.origin.count > 1) return failure("%u origins, not 1", scene.origin.count);
+  for (const SceneOrigin& o : scene.origin)
+    for (double x : {o.x, o.y, o.z})
+      if (!within(Quantity::coordinate, x)) return failure("the origin is not finite or too far away");
+  return success();
+}
+
 Status validate_scene(const Scene& scene) {
   RETURN_IF_ERROR(validate_info(scene.info));
   RETURN_IF_ERROR(validate_counts(scene));
@@ -227,6 +235,7 @@ Status validate_scene(const Scene& scene) {
   RETURN_IF_ERROR(validate_clear_coats(scene));
   RETURN_IF_ERROR(validate_lights_and_cameras(scene));
   RETURN_IF_ERROR(validate_default_view(scene));
+  RETURN_IF_ERROR(validate_origin(scene));
   RETURN_IF_ERROR(validate_nodes(scene));
   RETURN_IF_ERROR(validate_animations(scene));
   RETURN_IF_ERROR(validate_moving_meshes(scene));

@@ -14,9 +14,14 @@ Vec3 linear(const std::uint8_t levels[3]) {
   return {srgb_to_linear(levels[0]), srgb_to_linear(levels[1]), srgb_to_linear(levels[2])};
 }
 
-Vec3 color_of(Aov aov, const Vec3& value, float most) {
+Vec3 color_of(Aov aov, const Vec3& value, float most, const Box& range) {
   std::uint8_t levels[3];
   switch (aov) {
+    case Aov::position: {
+      const Vec3 size = extent(range), from = value - range.low;
+      if (is_zero(value)) return value;
+      return {size.x > 0 ? from.x / size.x : 0, size.y > 0 ? from.y / size.y : 0, size.z > 0 ? from.z / size.z : 0};
+    }
     case Aov::normal:
       return is_zero(value) ? value : (value + Vec3{1, 1, 1}) * 0.5f;
     case Aov::triangle:
@@ -45,8 +50,12 @@ void for_each_pixel(const PixelBox& box, Renderer* renderer, Visit visit) {
 AovPicture color_aov(Aov aov, const PixelBox& box, Renderer* renderer) {
   CHECK(aov != Aov::none && renderer->image.data != nullptr);
   float most = 0;
-  for_each_pixel(box, renderer, [&](Vec3* p) { most = std::max(most, max_component(*p)); });
-  for_each_pixel(box, renderer, [&](Vec3* p) { *p = color_of(aov, *p, most); });
+  Box range = empty_box();
+  for_each_pixel(box, renderer, [&](Vec3* p) {
+    most = std::max(most, max_component(*p));
+    if (!is_zero(*p)) range = merge(range, *p);
+  });
+  for_each_pixel(box, renderer, [&](Vec3* p) { *p = color_of(aov, *p, most, range); });
   renderer->exposure = 1;
   AovPicture picture;
   const int width = box.height >= 3 * kLegendHeight ? box.width : 0;  // it hides a third of the picture at most
@@ -64,11 +73,17 @@ AovPicture color_aov(Aov aov, const PixelBox& box, Renderer* renderer) {
   }
   if (aov == Aov::triangle) {
     picture.legend = make_text_legend("triangle: a colour each", width);
-    std::snprintf(picture.told, sizeof picture.told, "  triangle: a colour each; .pfm and .exr have their numbers, plus 1");
+    std::snprintf(picture.told, sizeof picture.told,
+                  "  triangle: a colour each; .pfm and .exr have their numbers, plus 1");
+  }
+  if (aov == Aov::position) {
+    picture.legend = make_text_legend("position: x, y, z as red, green, blue", width);
+    std::snprintf(picture.told, sizeof picture.told,
+                  "  position: x, y, z as red, green, blue, over what is seen; .pfm and .exr have the coordinates");
   }
   if (aov == Aov::depth)
-    std::snprintf(picture.told, sizeof picture.told, "  depth: white is %s scene units away; .pfm and .exr have the distances",
-                  high);
+    std::snprintf(picture.told, sizeof picture.told,
+                  "  depth: white is %s scene units away; .pfm and .exr have the distances", high);
   return picture;
 }
 

@@ -12,8 +12,8 @@ struct AovPicture {
 };
 
 // Replaces the values of the box in renderer->image by the colours that stand for them, and the exposure by 1. Cost:
-// viridis from 0 to the largest; triangle: a colour each; normal: x, y and z as red, green and blue; depth: grey, the
-// farthest white.
+// viridis from 0 to the largest; triangle: a colour each; normal and position: x, y and z as red, green and blue;
+// depth: grey, the farthest white.
 AovPicture color_aov(Aov aov, const PixelBox& box, Renderer* renderer);
 
 }  // namespace pocketray

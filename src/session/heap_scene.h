@@ -26,6 +26,7 @@ struct ModelOptions {
   float crease_angle = 40;
   bool studio = true;  // for models that call for one
   ReadingChoice reading;
+  bool animations = true;
 };
 
 // Makes a built-in scene or imports a model.

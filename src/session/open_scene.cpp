@@ -7,6 +7,7 @@
 #include "plan/plan_scene.h"
 #include "plan/unused_settings.h"
 #include "platform/memory.h"
+#include "session/animation_choice.h"
 #include "session/environment.h"
 #include "session/focus.h"
 #include "session/interrupt.h"
@@ -57,6 +58,13 @@ Status check_memory(std::size_t wanted, std::size_t free_bytes) {
                  memory_to_take(free_bytes) >> 10);
 }
 
+Status check_servers_animation(const CommonOptions& o) {
+  if (o.animation.empty() || o.animation == kAllAnimations) return success();
+  return failure(
+      "--server plays the scene's default animation: drop --server, or bake the scene with --animation %.60s",
+      o.animation.c_str());
+}
+
 Status change_exposure(float factor, float* exposure) {
   CHECK(exposure != nullptr);
   *exposure *= factor;
@@ -87,8 +95,10 @@ Status open_scene(const CommonOptions& o, const OpenHooks& hooks, OpenScene* ope
   renderer->camera_index = o.camera_index;
   renderer->accel_info = find_accel(o.accel);
   opened->source.reading = o.reading;
+  if (o.animation == kNoAnimation) renderer->animation = kNone;
   SceneStorage storage;
   RETURN_IF_ERROR(hooks.load(o.scene, renderer, &opened->source, &storage));
+  RETURN_IF_ERROR(find_animation(renderer->scene, o.animation, &renderer->animation));
   RETURN_IF_ERROR(set_environment_if_requested(o.environment, renderer, &opened->source, &storage));
   RETURN_IF_ERROR(check_outputs_of(o, opened->source.files));
   RETURN_IF_ERROR(solve_if_requested(o.scene, renderer, &opened->source, &storage));
@@ -109,7 +119,8 @@ Status open_scene(const CommonOptions& o, const OpenHooks& hooks, OpenScene* ope
   }
   if (!o.camera.empty()) {
     Camera camera;
-    RETURN_IF_ERROR(parse_camera(o.camera, &camera));
+    const Array<const SceneOrigin>& origin = renderer->scene.origin;
+    RETURN_IF_ERROR(parse_camera(o.camera, &camera, origin.count ? origin[0] : SceneOrigin{0, 0, 0}));
     RETURN_IF_ERROR(set_camera(renderer, camera));
   }
   return success();

@@ -31,17 +31,24 @@ Status read_setting(const SettingRow& row, const SettingOption& option, Quality*
 }
 
 // Reads numbers separated by spaces or commas; false unless there are exactly `count` finite ones.
-bool read_numbers(const std::string& text, float* values, int count) {
+bool read_numbers(const std::string& text, double* values, int count) {
   const char* at = text.c_str();
   for (int i = 0; i < count; ++i) {
     while (*at == ' ' || *at == ',') ++at;
     char* end;
-    values[i] = std::strtof(at, &end);
-    if (end == at || !std::isfinite(values[i])) return false;
+    values[i] = std::strtod(at, &end);
+    if (end == at || !std::isfinite(static_cast<float>(values[i]))) return false;
     at = end;
   }
   while (*at == ' ') ++at;
   return *at == 0;
+}
+bool read_numbers(const std::string& text, float* values, int count) {
+  double exact[3];
+  CHECK(count >= 1 && count <= 3);
+  if (!read_numbers(text, exact, count)) return false;
+  for (int i = 0; i < count; ++i) values[i] = static_cast<float>(exact[i]);
+  return true;
 }
 
 }  // namespace
@@ -189,21 +196,19 @@ Status parse_bytes(const std::string& text, std::size_t* bytes, const char* opti
   return success();
 }
 
-Status parse_camera(const std::string& text, Camera* camera) {
-  float v[10];
+Status parse_camera(const std::string& text, Camera* camera, const SceneOrigin& origin) {
+  double v[10];
   if (!read_numbers(text, v, 10))
     return failure("--camera is '%s': write it as \"ex,ey,ez tx,ty,tz ux,uy,uz VFOV\", the field of view in degrees",
                    text.c_str());
-  for (int i = 0; i < 9; ++i)
-    RETURN_IF_ERROR(check_limit(Quantity::coordinate, static_cast<double>(v[i]), "a coordinate of --camera"));
+  for (int i = 0; i < 9; ++i) RETURN_IF_ERROR(check_limit(Quantity::coordinate, v[i], "a coordinate of --camera"));
   *camera = Camera();
-  camera->eye = {v[0], v[1], v[2]};
-  camera->target = {v[3], v[4], v[5]};
-  camera->up = {v[6], v[7], v[8]};
-  camera->vertical_fov = static_cast<float>(radians(v[9]));
+  camera->eye = to_float(Vec3d{v[0] - origin.x, v[1] - origin.y, v[2] - origin.z});
+  camera->target = to_float(Vec3d{v[3] - origin.x, v[4] - origin.y, v[5] - origin.z});
+  camera->up = to_float(Vec3d{v[6], v[7], v[8]});
+  camera->vertical_fov = static_cast<float>(radians(static_cast<float>(v[9])));
   if (!within(Quantity::field_of_view, camera->vertical_fov))
-    return failure("the field of view of --camera is %g degrees: it must lie in 0.001 … 179",
-                   static_cast<double>(v[9]));
+    return failure("the field of view of --camera is %g degrees: it must lie in 0.001 … 179", v[9]);
   return success();
 }
 

@@ -36,6 +36,7 @@ struct CommonOptions {
   std::string background, light = "key", fov;  // empty: the scene's
   std::string environment;                     // import/environment.h; empty: the scene's
   std::string focus;                           // a part of the model; empty: all of it
+  std::string animation;                       // animation_choice.h; empty: the default
   ReadingChoice reading;
   std::uint32_t threads = 0, camera_index = 0;
   // What the command writes beside --json. None of it may replace a file that the scene is read from.
@@ -68,7 +69,8 @@ const AccelInfo* find_accel(const std::string& name);
 // "WIDTHxHEIGHT"; "24M", "512K", "1G" or bytes; "ex,ey,ez tx,ty,tz ux,uy,uz VFOV" (degrees).
 Status parse_size(const std::string& text, std::uint32_t* width, std::uint32_t* height);
 Status parse_bytes(const std::string& text, std::size_t* bytes, const char* option = "--memory");
-Status parse_camera(const std::string& text, Camera* camera);
+// `origin`: the scene's place in the coordinates of the text.
+Status parse_camera(const std::string& text, Camera* camera, const SceneOrigin& origin = {0, 0, 0});
 // Parses --background, --light and --fov.
 Status parse_look(const CommonOptions& options, Look* look);
 enum class ExposureChoice { as_scene, measured, fixed };

@@ -48,6 +48,7 @@ Status load_imported(const std::string& name, Renderer* renderer, SceneSource* s
   const bool with_studio = renderer->look.environment == EnvironmentChoice::as_scene && !renderer->look.has_background;
   ImportOptions options;
   apply(source->reading, &options);
+  options.animations = renderer->animation != kNone;
   RETURN_IF_ERROR(import_model(name, options, &imported, with_studio));
   source->warning = imported.warning;
   source->material_names = imported.material_names;
@@ -90,6 +91,7 @@ void apply(const ReadingChoice& choice, ImportOptions* options) {
   CHECK(options != nullptr);
   options->up = choice.up == "z" ? UpAxis::z : choice.up == "y" ? UpAxis::y : UpAxis::of_format;
   options->strict = choice.strict;
+  options->root = choice.root;
 }
 
 Status import_model(const std::string& name, const ImportOptions& options, ImportedScene* imported, bool with_studio) {

@@ -19,6 +19,7 @@ using NamedBoxes = std::vector<std::pair<std::string, Box>>;
 struct ReadingChoice {
   std::string up;  // y or z; empty: as its format has it
   bool strict = false;
+  std::string root;  // the folder that the model's files lie below; empty: its own
 };
 
 struct SceneSource {

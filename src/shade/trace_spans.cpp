@@ -13,6 +13,12 @@ namespace {
 
 Vec3 same(float value) { return {value, value, value}; }
 
+Vec3 in_model(const Scene& scene, const Vec3& p) {
+  if (scene.origin.empty()) return p;
+  const SceneOrigin& origin = scene.origin[0];
+  return {static_cast<float>(origin.x + p.x), static_cast<float>(origin.y + p.y), static_cast<float>(origin.z + p.z)};
+}
+
 Vec3 pixel_aov(Tracer* tracer, std::uint32_t column, std::uint32_t row, Aov aov) {
   const FrameData& frame = *tracer->frame;
   if (aov == Aov::cost) {
@@ -29,6 +35,7 @@ Vec3 pixel_aov(Tracer* tracer, std::uint32_t column, std::uint32_t row, Aov aov)
   float passed;
   if (!visible_surface(tracer, &ray, &hit, &s, &passed)) return {0, 0, 0};
   if (aov == Aov::depth) return same(passed + hit.t);
+  if (aov == Aov::position) return in_model(*frame.scene, s.point);
   return aov == Aov::triangle ? same(static_cast<float>(hit.triangle + 1)) : s.normal;
 }
 

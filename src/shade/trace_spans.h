@@ -6,7 +6,8 @@
 namespace pocketray {
 
 // The quantity that --aov writes instead of colour; indirect_light is only for devices that share frames by effect.
-enum class Aov { none, depth, normal, triangle, cost, indirect_light };
+// position: in the model's own coordinates, zero where nothing is hit.
+enum class Aov { none, depth, normal, triangle, position, cost, indirect_light };
 
 // A tracer for the frame.
 Tracer make_tracer(const FrameData& frame);

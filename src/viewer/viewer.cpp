@@ -8,8 +8,9 @@
 #include "base/printable.h"
 #include "base/seal.h"
 #include "platform/file.h"
-#include "session/nothing_picture.h"
+#include "session/animation_choice.h"
 #include "session/interrupt.h"
+#include "session/nothing_picture.h"
 #include "session/picture.h"
 #include "viewer/steps.h"
 
@@ -53,6 +54,7 @@ void take_events(Viewer* viewer) {
     if (event.button == Button::faster) --viewer->front_steps;
     if (event.button == Button::side_by_side) ++viewer->side_by_side_presses;
     if (event.button == Button::traced) ++viewer->traced_presses;
+    if (event.button == Button::animation) ++viewer->animation_presses;
     if (event.button == Button::select) viewer->change_mode = true;
   }
   if (interrupted) viewer->quit = true;
@@ -107,6 +109,25 @@ void answer_traced(Viewer* viewer, const Renderer& renderer) {
     viewer->traced = !viewer->traced;
   }
   viewer->traced_presses = 0;
+}
+
+// Plays the next of the scene's animations; after the last, none.
+void change_animation(Viewer* viewer, Renderer* renderer, ViewerLoop* loop) {
+  const Scene& scene = renderer->scene;
+  if (viewer->animation_presses == 0) return;
+  const char* refused = !has(renderer->effects.mask, Effect::animation) ? "N changes the animation, but nothing moves"
+                        : viewer->servers ? "N changes the animation, but not that of servers: start without --server"
+                                          : nullptr;
+  for (; !refused && viewer->animation_presses > 0; --viewer->animation_presses)
+    renderer->animation = renderer->animation == kNone                       ? 0
+                          : renderer->animation + 1 < scene.animations.count ? renderer->animation + 1
+                                                                             : kNone;
+  viewer->animation_presses = 0;
+  SealPause pause;  // for the texts
+  tell(viewer, refused ? refused : describe_animation(scene, renderer->animation).c_str());
+  if (refused) return;
+  loop->passed = true;
+  if (viewer->side_by_side) viewer->side_by_side->backend->forget(viewer->side_by_side);
 }
 
 // Responds to buttons that do nothing in this run.
@@ -174,18 +195,21 @@ void keep_picture(Viewer* viewer, const Renderer& renderer) {
   viewer->has_picture = true;
 }
 
-void keep_view(Viewer* viewer, const ViewerLoop& loop) {
+void keep_view(Viewer* viewer, std::uint32_t animation, const ViewerLoop& loop) {
   std::snprintf(viewer->kept.scene_path, sizeof viewer->kept.scene_path, "%s", viewer->scene_path.c_str());
   viewer->kept.control = loop.control;
   viewer->kept.control.camera.node = kNone;  // it stays where the user put it, attached to no moving node
   viewer->kept.camera_moved = loop.camera_moved;
   viewer->kept.seconds = loop.seconds;
+  viewer->kept.animation = animation;
 }
 
 // Restores the kept view, unless the reloaded scene cannot have it.
 void take_kept_view(const Viewer& viewer, Renderer* renderer, ViewerLoop* loop) {
   if (viewer.kept.scene_path != viewer.scene_path) return;
   loop->seconds = viewer.kept.seconds;
+  if (viewer.kept.animation == kNone || viewer.kept.animation < renderer->scene.animations.count)
+    renderer->animation = viewer.kept.animation;
   loop->control.mode = viewer.kept.control.mode;
   loop->camera_moved = viewer.kept.camera_moved && set_camera(renderer, viewer.kept.control.camera).ok;
   if (loop->camera_moved) loop->control.camera = viewer.kept.control.camera;
@@ -368,12 +392,13 @@ Status run_viewer(Viewer* viewer, Renderer* renderer, bool* again) {
     if (viewer->quit || enough) break;
     if (viewer->reload || is_file_changed(*viewer, &viewer->watch)) {
       *again = true;
-      keep_view(viewer, loop);
+      keep_view(viewer, renderer->animation, loop);
       keep_picture(viewer, *renderer);
       viewer->waiting_since_ns = viewer->backend->now_ns();
       break;
     }
     answer_buttons(viewer, renderer);
+    change_animation(viewer, renderer, &loop);
     status = step_scene(viewer, renderer, &loop);
     if (status.ok) status = step_viewer(viewer, renderer, &loop);
     if (!status.ok || !is_first || viewer->frames_finished == finished_before) continue;

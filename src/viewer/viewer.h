@@ -41,6 +41,7 @@ struct KeptView {
   CameraControl control;
   bool camera_moved = false;  // by the user; otherwise shows the scene's own camera, which may have changed
   double seconds = 0;
+  std::uint32_t animation = 0;
 };
 
 struct Viewer {
@@ -72,6 +73,7 @@ struct Viewer {
   bool side_by_side_changed = false;  // side_by_side_shown changed and the screen does not show it yet
   bool front_home = false;            //   as the budget has it
   int traced_presses = 0;             // asked for
+  int animation_presses = 0;          // asked for
   bool hud = true, hud_shown = false, paused = false;
   bool traced = false, traced_shown = false;  // dims the pixels kept from the last frame; the screen does
   std::uint64_t event_ns = 0;                 // of the last button

@@ -19,6 +19,10 @@ void fuzz_pray(const std::uint8_t* bytes, std::size_t byte_count);
 
 // A model after a first byte, which selects its ending from import_endings(). Only with the importers built in.
 void fuzz_import(const std::uint8_t* bytes, std::size_t byte_count);
+// A glTF document without a first byte; libFuzzer changes its structure.
+void fuzz_gltf(const std::uint8_t* bytes, std::size_t byte_count);
+// Imports, bakes, opens and renders a model file with that ending.
+void fuzz_model(const std::string& ending, const std::uint8_t* bytes, std::size_t byte_count);
 std::vector<std::string> import_endings();
 
 // Renders small frames of an accepted scene at two times.
@@ -47,6 +51,7 @@ struct FuzzSeed {
 std::vector<FuzzSeed> message_seeds();
 std::vector<FuzzSeed> pray_seeds();
 std::vector<FuzzSeed> import_seeds();
+std::vector<FuzzSeed> gltf_seeds();
 std::vector<FuzzSeed> front_seeds();
 std::vector<FuzzSeed> text_seeds();
 std::vector<FuzzSeed> client_seeds();

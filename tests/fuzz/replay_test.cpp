@@ -106,6 +106,17 @@ TEST_CASE("fuzz_import_corpus_and_damaged_seeds") {
   damage(import_seeds(), fuzz_import, effort(8));
   CHECK(replay("import", fuzz_import) >= 4);
 }
+
+// Goal: no glTF document makes the program abort, hang or allocate without bounds; the seeds are read and rendered.
+TEST_CASE("fuzz_gltf_corpus_and_damaged_seeds") {
+  check_committed("gltf", gltf_seeds());
+  fuzz_counts = FuzzCounts();
+  for (const FuzzSeed& seed : gltf_seeds()) fuzz_gltf(seed.bytes.data(), seed.bytes.size());
+  CHECK(fuzz_counts.imports == gltf_seeds().size());
+  CHECK(fuzz_counts.frames == 2 * fuzz_counts.imports);
+  damage(gltf_seeds(), fuzz_gltf, effort(40));
+  CHECK(replay("gltf", fuzz_gltf) >= 3);
+}
 #endif
 
 // Goal: no front or price file makes the program abort, and accepted ones can be used and written again.

@@ -3,20 +3,11 @@
 
 #include "import/gltf_writer.h"
 #include "import/import_testing.h"
-#include "scene/animate.h"
+#include "import/posed.h"
 
 using namespace pocketray;
 
 namespace {
-
-struct Posed {
-  std::vector<std::uint8_t> block;
-  Pose pose;
-  explicit Posed(const Scene& scene) : block(pose_need(scene) + kArenaAlignment) {
-    Arena arena = make_arena("pose", block.data(), block.size());
-    pose = make_pose(scene, &arena);
-  }
-};
 
 Vec3 center_of(const Scene& scene, const Pose& pose, std::uint32_t mesh) {
   Box box = empty_box();
@@ -119,21 +110,21 @@ TEST_CASE("gltf_sample_interpolation_test_moves_nine_cubes") {
   if (!have(path)) return;
   ImportedScene imported = load(path);
   const Scene& s = imported.scene;
-  REQUIRE(s.animations.count == 9);
+  REQUIRE(s.animations.count == 10);  // all together, and each
   REQUIRE(s.moving_meshes.count == 9);
   check_starts_posed(s);
   Posed posed(s);
   const double between = 0.5 * 0.4166666567325592;  // half-way from key 0 to key 1
-  pose_at(s, 8, between, &posed.pose);
+  pose_at(s, 9, between, &posed.pose);
   CHECK(center_of(s, posed.pose, 8).y == doctest::Approx(0.5 * (6.621 + 10)).epsilon(1e-4));
-  pose_at(s, 7, 0.5 * between, &posed.pose);  // a quarter: 3t² − 2t³ = 0.15625
+  pose_at(s, 8, 0.5 * between, &posed.pose);  // a quarter: 3t² − 2t³ = 0.15625
   CHECK(center_of(s, posed.pose, 7).y == doctest::Approx(6.6401 + 0.15625 * (10 - 6.6401)).epsilon(1e-4));
-  pose_at(s, 6, between, &posed.pose);
+  pose_at(s, 7, between, &posed.pose);
   CHECK(center_of(s, posed.pose, 6).y == doctest::Approx(6.6652).epsilon(1e-4));
   float full = width_of(s, posed.pose, 0);
-  pose_at(s, 0, 0.5, &posed.pose);
+  pose_at(s, 1, 0.5, &posed.pose);
   CHECK(width_of(s, posed.pose, 0) == doctest::Approx(0.5 * static_cast<double>(full)));
-  pose_at(s, 1, 0.5 * (0.4166666567325592 + 0.875), &posed.pose);
+  pose_at(s, 2, 0.5 * (0.4166666567325592 + 0.875), &posed.pose);
   CHECK(width_of(s, posed.pose, 1) == doctest::Approx(0.75 * static_cast<double>(full)).epsilon(1e-3));
 }
 

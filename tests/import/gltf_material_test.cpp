@@ -329,8 +329,9 @@ TEST_CASE("gltf_required_looks_are_a_warning") {
 // Goal: a texture whose image only an extension knows is left out and named, wherever a material uses it. Method: such
 // a texture as colour, normals and a coat's strength, beside one with an image.
 TEST_CASE("gltf_textures_in_unknown_formats_are_left_out") {
-  const std::string textures = images(kColors, "{\"extensions\":{\"EXT_texture_webp\":{\"source\":0}}},{\"source\":0}");
-  const std::string names = "[\"EXT_texture_webp\"]",
+  const std::string textures =
+      images(kColors, "{\"extensions\":{\"KHR_texture_basisu\":{\"source\":0}}},{\"source\":0}");
+  const std::string names = "[\"KHR_texture_basisu\"]",
                     extensions = ",\"extensionsUsed\":" + names + ",\"extensionsRequired\":" + names;
   auto material = [&](int texture) {
     const std::string use = "{\"index\":" + std::to_string(texture) + "}";
@@ -340,7 +341,7 @@ TEST_CASE("gltf_textures_in_unknown_formats_are_left_out") {
                                    extensions + textures));
   };
   const ImportedScene without = material(0), with = material(1);
-  CHECK(without.warning.find("textures in other formats than PNG and JPEG") != std::string::npos);
+  CHECK(without.warning.find("textures in other formats than PNG, JPEG and WebP") != std::string::npos);
   CHECK(without.scene.textures.count == 0);
   REQUIRE(without.scene.clear_coats.count > 0);
   CHECK(without.scene.clear_coats[0].strength == 0.5f);
