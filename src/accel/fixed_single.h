@@ -66,8 +66,8 @@ inline void write_hit(const FixedBest& best, Hit* hit) {
 // The edge functions of a crossed triangle exceed 12 A units with A as in fixed_leaf.h; place_in_leaf() computes them
 // with an error below 2^-48 S A for a triangle within S of the origin, S < 2^29: with the same signs.
 inline bool locate(const DualRay& ray, const TriangleBlock& block, int lane, FixedVerdict verdict, Crossing* crossing) {
-  return verdict == FixedVerdict::crossed ? place_in_leaf<true>(ray.exact, block, lane, crossing)
-                                          : cross_alone(ray.exact, block, lane, crossing);
+  return (verdict == FixedVerdict::crossed && place_in_leaf<true>(ray.exact, block, lane, crossing)) ||
+         cross_alone(ray.exact, block, lane, crossing);
 }
 inline bool accepts(const HitFilter& filter, std::uint32_t triangle, const Crossing& crossing) {
   return filter.accept(filter.context, triangle, static_cast<float>(crossing.b / crossing.sum),

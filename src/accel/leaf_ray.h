@@ -127,7 +127,8 @@ inline bool place_in_leaf(const ExactRay& ray, const TriangleBlock& block, int l
   }
   double sum = w.a + w.b + w.c;
   *crossing = {w.b, w.c, sum, static_cast<float>((w.a * p.z + w.b * q.z + w.c * r.z) / (sum * dz))};
-  return true;
+  // cross_alone() tells whether the ray begins on the plane.
+  return !is_close_hit(crossing->t, ray.direction[2], p.z, q.z, r.z);
 }
 
 // Tests one triangle by itself, where an edge function is zero or rounding makes decision and weights disagree.

@@ -12,6 +12,7 @@ inline namespace POCKETRAY_ISA {
 // A triangle's vertices relative to the origin, as doubles.
 struct ExactTriangle {
   double x[3], y[3], z[3];
+  double reach;  // largest |z|
 };
 inline ExactTriangle exact_triangle(const Packet& p, const TriangleBlock& block, int lane) {
   ExactTriangle k;
@@ -20,6 +21,8 @@ inline ExactTriangle exact_triangle(const Packet& p, const TriangleBlock& block,
     k.x[i] = block.vertex[i][p.kx][lane] - ox, k.y[i] = block.vertex[i][p.ky][lane] - oy;
     k.z[i] = block.vertex[i][p.kz][lane] - oz;
   }
+  const double a = std::fabs(k.z[0]), b = std::fabs(k.z[1]), c = std::fabs(k.z[2]), farther = a > b ? a : b;
+  k.reach = farther > c ? farther : c;
   return k;
 }
 
@@ -76,9 +79,11 @@ inline bool settle_doubtful(Packet* p, const TriangleBlock& block, int lane, int
 // One ray that certainly hits the triangle in a lane.
 inline bool settle_ray(Packet* p, const TriangleBlock& block, int lane, int i) {
   double dz = p->direction_z[i];
-  Location<double> at = locate<double>(exact_triangle(*p, block, lane), p->direction_x[i], p->direction_y[i], dz);
+  const ExactTriangle k = exact_triangle(*p, block, lane);
+  Location<double> at = locate<double>(k, p->direction_x[i], p->direction_y[i], dz);
   if (signs_differ(at.weight) || all_zero(at.weight)) return settle_doubtful(p, block, lane, i);
   float t = static_cast<float>(at.depth / (at.sum * dz));
+  if (is_close_hit(t, p->direction_z[i], k.z[0], k.z[1], k.z[2])) return settle_doubtful(p, block, lane, i);
   return take_hit(p, i, t, at.weight.b, at.weight.c, at.sum, block.triangle[lane]);
 }
 
@@ -96,7 +101,9 @@ bool settle_rays(Packet* p, const TriangleBlock& block, int lane, const ExactTri
   auto proper = ((zero <= low) & (zero < high)) | ((high <= zero) & (low < zero));  // signs agree, not all zero
   D sum = select(proper, at.sum, D::splat(1));
   F t = narrow(at.depth / (sum * dz)), best = F::load(p->t + first);
-  unsigned alone = mask & (doubtful | ~bits(proper));
+  // As is_close_hit(), or a little beyond: these are settled alone.
+  const F close = F::splat(2 * kCloseHit * static_cast<float>(k.reach));
+  unsigned alone = mask & (doubtful | ~bits(proper) | bits(abs(t * direction_z) < close));
   unsigned ahead = mask & ~alone & bits(F::splat(0) < t), nearer = ahead & bits(t < best);
   alone |= ahead & bits(t == best);
   if (p->filter) alone |= nearer, nearer = 0;

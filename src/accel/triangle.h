@@ -110,11 +110,47 @@ struct Crossing {
   float t;
 };
 
+// A ray that begins on a triangle's plane does not hit it: t would be the rounding of 0. Close hits, compared with the
+// largest depth of a vertex, are asked whether that is so. Rounding of t grows towards grazing rays, but stays below.
+constexpr float kCloseHit = 0x1p-16f;
+inline bool is_close_hit(float t, float direction_z, double az, double bz, double cz) {
+  if (!(t > 0)) return false;
+  const float a = static_cast<float>(std::fabs(az)), b = static_cast<float>(std::fabs(bz)),
+              c = static_cast<float>(std::fabs(cz)), farther = a > b ? a : b;
+  return std::fabs(t * direction_z) < kCloseHit * (farther > c ? farther : c);
+}
+
+// Whether the origin lies on the plane of vertices relative to it, in the order of the ray's axes: their determinant is
+// less than its rounding error.
+__attribute__((noinline)) inline bool is_on_plane(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
+  double determinant = 0, size = 0;
+  for (int k = 0; k < 3; ++k) {
+    const int i = (k + 1) % 3, j = (k + 2) % 3;
+    const double first = a[k] * (b[i] * c[j]), second = a[k] * (b[j] * c[i]);
+    determinant += first - second, size += std::fabs(first) + std::fabs(second);
+  }
+  return std::fabs(determinant) <= 0x1p-49 * size;
+}
+// Whether a close hit is none. A triangle that lies all ahead is not judged, as tests in float may count it as hit.
+inline bool begins_on_plane(float direction_z, const Vec3d& a, const Vec3d& b, const Vec3d& c) {
+  const double ahead = direction_z < 0 ? -1 : 1;
+  return !(a.z * ahead > 0 && b.z * ahead > 0 && c.z * ahead > 0) && is_on_plane(a, b, c);
+}
+
+inline Vec3d from_origin(const ShearedRay& ray, const Vec3& v) {
+  auto along = [&](int axis) { return static_cast<double>(v[axis]) - static_cast<double>(ray.origin[axis]); };
+  return {along(ray.kx), along(ray.ky), along(ray.kz)};
+}
+
 inline Crossing place_crossing(const ShearedRay& ray, const Vec3& a, const Vec3& b, const Vec3& c,
                                const EdgeValues<double>& w) {
-  double sum = w.a + w.b + w.c, z = ray.origin[ray.kz];
-  double t = (w.a * (a[ray.kz] - z) + w.b * (b[ray.kz] - z) + w.c * (c[ray.kz] - z)) / (sum * ray.direction[ray.kz]);
-  return {w.b, w.c, sum, static_cast<float>(t)};
+  double sum = w.a + w.b + w.c, z = ray.origin[ray.kz], az = a[ray.kz] - z, bz = b[ray.kz] - z, cz = c[ray.kz] - z;
+  const float direction_z = ray.direction[ray.kz];
+  float t = static_cast<float>((w.a * az + w.b * bz + w.c * cz) / (sum * direction_z));
+  if (is_close_hit(t, direction_z, az, bz, cz) &&
+      begins_on_plane(direction_z, from_origin(ray, a), from_origin(ray, b), from_origin(ray, c)))
+    t = 0;
+  return {w.b, w.c, sum, t};
 }
 
 // Whether and where the ray crosses the triangle a, b, c. t may have any sign or be infinite; the caller bounds it.
@@ -131,7 +167,11 @@ inline bool cross_triangle(const ShearedRay& ray, const Vec3& a, const Vec3& b, 
     if (signs_differ(sheared) || all_zero(sheared)) return false;
   }
   EdgeValues<double> w = exact_weights(ray, a, b, c);
-  if (signs_differ(w) || all_zero(w)) w = edge_values<double>(ax, ay, bx, by, cx, cy);
+  if (signs_differ(w) || all_zero(w)) {
+    // A ray along the plane it begins on would hit by the rounding of its direction.
+    if (is_on_plane(from_origin(ray, a), from_origin(ray, b), from_origin(ray, c))) return false;
+    w = edge_values<double>(ax, ay, bx, by, cx, cy);
+  }
   *crossing = place_crossing(ray, a, b, c, w);
   return true;
 }

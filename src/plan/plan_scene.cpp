@@ -117,7 +117,7 @@ bool lights_itself(const Scene& scene) {
   if (shines(scene.lights)) return true;
   for (const Material& m : scene.materials)
     if (max_component(m.emission) > 1) return true;
-  return false;
+  return lamps_light_up(scene);
 }
 
 void default_lights(const DefaultView& view, const Box& bounds, const Camera& camera, Light* lights) {

@@ -22,7 +22,8 @@ DefaultView find_default_view(const Scene& scene, const Box& bounds);
 // slightly above and to the right of the front, or of another side where open surfaces show their backs to the front.
 // `vertical_fov`: 0 chooses it.
 Camera default_camera(const DefaultView& view, const Box& bounds, float aspect, double vertical_fov = 0);
-// Whether a model lights itself: it has a light, or a surface that emits more than display white.
+// Whether a model lights itself: it has a light, a surface that emits more than display white, or dimmer lamps that
+// light other surfaces. (A glow that falls on none, such as that of a display, is not the light to see a model by.)
 bool lights_itself(const Scene& scene);
 
 // The lights of a scene without any, or one that asks for default lights: a key from the upper left of the camera and a

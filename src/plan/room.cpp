@@ -1,6 +1,7 @@
 #include "plan/room.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "accel/triangle.h"
@@ -62,21 +63,25 @@ constexpr int kWallsMin = 20;  // chosen: five pass through a missing wall (test
 struct Look {
   Ray ray;
   ShearedRay sheared;
+  std::uint32_t from = kNoTriangle;  // does not count
   float distance = std::numeric_limits<float>::infinity();
+  std::uint32_t triangle = kNoTriangle;
   bool is_front = false, is_square = false;  // square: a wall across an axis, a floor, a ceiling
 };
 
 // Along each ray, the first triangle.
 void look_around(const Scene& scene, Array<Look> looks) {
   CHECK(looks.data != nullptr);
-  for (const Triangle& t : scene.triangles) {
+  for (std::uint32_t i = 0; i < scene.triangles.count; ++i) {
+    const Triangle& t = scene.triangles[i];
     if (!is_hittable(scene.positions, t)) continue;
     const Vec3 &a = scene.positions[t.vertex(0)], &b = scene.positions[t.vertex(1)], &c = scene.positions[t.vertex(2)];
     for (Look& look : looks) {
       Hit hit;
+      if (look.from == i) continue;
       if (!intersect_triangle(look.sheared, a, b, c, &hit) || !(hit.t > 0 && hit.t < look.distance)) continue;
       const Vec3 normal = normalize(cross(b - a, c - a));
-      look.distance = hit.t, look.is_front = dot(normal, look.ray.direction) < 0;
+      look.distance = hit.t, look.triangle = i, look.is_front = dot(normal, look.ray.direction) < 0;
       look.is_square = max_component(abs(normal)) > 0.99f;  // within 8°
     }
   }
@@ -130,6 +135,53 @@ float free_distance(const Scene& scene, const Vec3& from, const Vec3& direction)
   if (!make_look(from, direction, &look)) return look.distance;
   look_around(scene, {&look, 1});
   return look.distance;
+}
+
+bool lamps_light_up(const Scene& scene) {
+  auto emits = [&](const Triangle& t) {
+    const Material& m = scene.materials[t.material()];
+    return !is_zero(m.emission) && !m.unlit && m.emission_texture.texture == kNone && is_hittable(scene.positions, t);
+  };
+  auto area_vector = [&](const Triangle& t) {
+    const Corners k = corners(scene, t, scene.positions[t.vertex(0)]);
+    return cross(k.b, k.c) * 0.5f;
+  };
+  double area = 0, before = 0;
+  for (const Triangle& t : scene.triangles)
+    if (emits(t)) area += static_cast<double>(length(area_vector(t)));
+  if (!(area > 0)) return false;
+  constexpr int kLampLooks = 64, kLitMin = 6;  // chosen: the glow of a lit thing falls on less of it
+  Look looks[kLampLooks];
+  std::uint32_t count = 0;
+  int next = 0;
+  for (std::uint32_t i = 0; i < scene.triangles.count && next < kLampLooks; ++i) {
+    const Triangle& t = scene.triangles[i];
+    if (!emits(t)) continue;
+    const Vec3 outward = area_vector(t);
+    before += static_cast<double>(length(outward));
+    const Corners k = corners(scene, t, {0, 0, 0});
+    Vec3 normal = normalize(outward), tangent, bitangent;
+    make_basis(normal, &tangent, &bitangent);
+    for (; next < kLampLooks && (next + 0.5) / kLampLooks * area <= before; ++next) {
+      const double square = (next * 29 % kLampLooks + 0.5) / kLampLooks, angle = next * 2.399963;  // the golden angle
+      const float out = static_cast<float>(std::sqrt(square)), up = static_cast<float>(std::sqrt(1 - square));
+      const Vec3 direction = tangent * (out * static_cast<float>(det_cos(angle))) +
+                             bitangent * (out * static_cast<float>(det_sin(angle))) +
+                             normal * (scene.materials[t.material()].double_sided && next % 2 ? -up : up);
+      const float u = static_cast<float>(next * 13 % 32 + 1) / 66, v = static_cast<float>(next * 7 % 32 + 1) / 66;
+      Look& look = looks[count];
+      if (!make_look(k.a * (1 - u - v) + k.b * u + k.c * v, direction, &look)) continue;
+      look.from = i, ++count;
+    }
+  }
+  look_around(scene, {looks, count});
+  int lit = 0;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    if (looks[i].triangle == kNoTriangle) continue;
+    const Material& m = scene.materials[scene.triangles[looks[i].triangle].material()];
+    lit += !m.unlit && !(is_zero(m.diffuse) && is_zero(m.specular));
+  }
+  return lit >= kLitMin;
 }
 
 Vec3d shown_area(const Scene& scene, const Box& bounds) {

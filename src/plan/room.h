@@ -16,6 +16,9 @@ Room find_room(const Scene& scene, const Box& bounds);
 // Distance from a point to the first triangle along a unit direction; infinite if there is none.
 float free_distance(const Scene& scene, const Vec3& from, const Vec3& direction);
 
+// Whether surfaces that emit without a texture, however dim, light others: a tenth of their light falls on some.
+bool lamps_light_up(const Scene& scene);
+
 // The vector sum of all triangles' areas along their fronts: zero for closed surfaces, otherwise towards the side that
 // open ones, as backdrops, show.
 Vec3d shown_area(const Scene& scene, const Box& bounds);

@@ -33,6 +33,7 @@ struct CornerKey {
 struct CornerWriter {
   double edge_max;
   bool back;
+  std::uint32_t material;
   Places* places;
   RadiositySolution* solution;
   std::map<CornerKey, std::uint32_t> shared;
@@ -42,7 +43,7 @@ struct CornerWriter {
     const Vec3d way = centre - corner.position;
     const Receiver at = {corner.position + way * kInset, back ? -corner.normal : corner.normal, kLift * length(way)};
     if (corner.vertex != kNone) {
-      if (!at_vertex[corner.vertex]) places->values.push_back({corner.vertex, at});
+      if (!at_vertex[corner.vertex]) places->values.push_back({corner.vertex, at, material});
       at_vertex[corner.vertex] = 1;
       return corner.vertex;
     }
@@ -51,7 +52,7 @@ struct CornerWriter {
       key.normal[axis] = static_cast<int>(std::floor(corner.normal[axis] * 500 + 0.5));
     auto found = shared.emplace(key, static_cast<std::uint32_t>(solution->values.size()));
     if (found.second) {
-      places->values.push_back({found.first->second, at});
+      places->values.push_back({found.first->second, at, material});
       solution->values.push_back({0, 0, 0});
     }
     return found.first->second;
@@ -95,11 +96,12 @@ void place_corners(const Scene& scene, const Surfaces& surfaces, double edge_max
                    const std::vector<char>& sees, Places* places, RadiositySolution* solution) {
   CHECK(edge_max > 0);
   CHECK(places != nullptr && solution != nullptr);
-  CornerWriter writer = {edge_max, back, places, solution, {}, std::vector<char>(scene.positions.count, 0)};
+  CornerWriter writer = {edge_max, back, kNone, places, solution, {}, std::vector<char>(scene.positions.count, 0)};
   if (!back && scene.normals.count && !surfaces.others.empty())
     solution->values.resize(scene.positions.count, Vec3{0, 0, 0});  // before those that corners share
   for (std::uint32_t t : surfaces.others) {
     if (!sees[t] || !reflects(scene.materials[scene.triangles[t].material()])) continue;
+    writer.material = scene.triangles[t].material();
     Corner corners[3];
     bool all_smooth = !back;
     for (int c = 0; c < 3; ++c) {

@@ -9,6 +9,7 @@
 #include "base/fmath.h"
 #include "brdf/brdf_list.h"
 #include "effect/settings.h"
+#include "radiosity/cuts.h"
 #include "scene/metallic_roughness.h"
 #include "shade/texture.h"
 
@@ -16,18 +17,6 @@ namespace pocketray {
 namespace {
 
 constexpr double kLift = 1e-4;  // of a patch's size
-
-// The part of a polygon where dot(p − origin, axis) ≥ limit.
-Polygon clip(const Polygon& polygon, const Vec3d& origin, const Vec3d& axis, double limit) {
-  Polygon result;
-  for (std::size_t i = 0; i < polygon.size(); ++i) {
-    const Vec3d &a = polygon[i], &b = polygon[(i + 1) % polygon.size()];
-    const double x = dot(a - origin, axis) - limit, y = dot(b - origin, axis) - limit;
-    if (x >= 0) result.push_back(a);
-    if ((x > 0 && y < 0) || (x < 0 && y > 0)) result.push_back(a + (b - a) * (x / (x - y)));
-  }
-  return result;
-}
 
 struct Facet {
   Vec3d a, b, c, normal;
@@ -76,18 +65,28 @@ void finish(const std::vector<Facet>& facets, Patch* patch) {
   place_samples(facets, patch->area, kLightSamples, patch->light_samples.data());
 }
 
+struct Barycentric {
+  double u, v;
+};
+Barycentric barycentric_at(const Scene& scene, std::uint32_t triangle, const Vec3d& point) {
+  const Vec3d a = corner_of(scene, triangle, 0), e = corner_of(scene, triangle, 1) - a,
+              f = corner_of(scene, triangle, 2) - a, n = cross(e, f), way = point - a;
+  const double square = dot(n, n);
+  return {dot(cross(way, f), n) / square, dot(cross(e, way), n) / square};
+}
+Vec2 uv_at(const Scene& scene, const TextureUse& use, std::uint32_t triangle, const Vec3d& point) {
+  const Barycentric at = barycentric_at(scene, triangle, point);
+  return texture_uv(scene, use, triangle, static_cast<float>(at.u), static_cast<float>(at.v));
+}
+
 // Albedo at a point of a triangle, with texture and vertex colours.
 Vec3d albedo_at(const Scene& scene, std::uint32_t triangle, const Vec3d& point) {
   const Triangle& t = scene.triangles[triangle];
   const Material& m = scene.materials[t.material()];
-  const Vec3d a = corner_of(scene, triangle, 0), e = corner_of(scene, triangle, 1) - a,
-              f = corner_of(scene, triangle, 2) - a, n = cross(e, f), way = point - a;
-  const double square = dot(n, n);
-  const double u = dot(cross(way, f), n) / square, v = dot(cross(e, way), n) / square;
+  const Barycentric at = barycentric_at(scene, triangle, point);
+  const double u = at.u, v = at.v;
   Vec3d tint = {1, 1, 1};
-  auto uv = [&](const TextureUse& use) {
-    return texture_uv(scene, use, triangle, static_cast<float>(u), static_cast<float>(v));
-  };
+  auto uv = [&](const TextureUse& use) { return uv_at(scene, use, triangle, point); };
   auto color_of = [&](const TextureUse& use) { return sample_texture(scene, use, uv(use), TextureFilter::as_scene); };
   if (m.diffuse_texture.texture != kNone) tint *= to_double(color_of(m.diffuse_texture).rgb);
   if (scene.colors.count) {
@@ -118,11 +117,24 @@ Vec3d albedo_at(const Scene& scene, std::uint32_t triangle, const Vec3d& point) 
   return to_double(m.diffuse) * tint + glossy - tinted * (Vec3d{1, 1, 1} - tint);
 }
 
-Patch patch_of(const Material& m) {
+Patch patch_of(const Scene& scene, std::uint32_t material) {
+  const Material& m = scene.materials[material];
   Patch patch;
+  patch.material = material;
   patch.is_back = patch.is_flat = false, patch.double_sided = m.double_sided && is_zero(m.transmission);
   patch.emission = to_double(m.emission);
   return patch;
+}
+
+// Once the samples are placed.
+void set_emission(const Scene& scene, const Material& m, Patch* patch) {
+  if (m.emission_texture.texture == kNone || !scene.uvs.count || is_zero(m.emission)) return;
+  Vec3d sum = {0, 0, 0};
+  for (const PatchSample& s : patch->light_samples) {
+    const Vec2 uv = uv_at(scene, m.emission_texture, s.triangle, s.point);
+    sum += to_double(sample_texture(scene, m.emission_texture, uv, TextureFilter::as_scene).rgb);
+  }
+  patch->emission *= sum * (1.0 / static_cast<double>(patch->light_samples.size()));
 }
 
 // Once the samples are placed.
@@ -134,15 +146,10 @@ void set_albedo(const Scene& scene, const Material& m, Patch* patch) {
   for (int axis = 0; axis < 3; ++axis) patch->albedo[axis] = std::min(std::max(patch->albedo[axis], 0.0), kAlbedoMax);
 }
 
-struct Piece {
-  Polygon polygon;
-  std::uint32_t triangle;
-};
-
 // Nothing is added for pieces without area.
 void add_cell(const Scene& scene, const FlatSurface& flat, const std::vector<Piece>& pieces,
               std::vector<Patch>* patches) {
-  Patch patch = patch_of(scene.materials[flat.material]);
+  Patch patch = patch_of(scene, flat.material);
   patch.is_flat = true;
   std::vector<Facet> facets;
   for (const Piece& piece : pieces) {
@@ -156,10 +163,12 @@ void add_cell(const Scene& scene, const FlatSurface& flat, const std::vector<Pie
   if (facets.empty()) return;
   finish(facets, &patch);
   set_albedo(scene, scene.materials[flat.material], &patch);
+  set_emission(scene, scene.materials[flat.material], &patch);
   patches->push_back(patch);
 }
 
-void add_cells(const Scene& scene, const FlatSurface& flat, double side, std::vector<Patch>* patches) {
+void add_cells(const Scene& scene, const FlatSurface& flat, double side, const std::vector<CutEdge>& edges,
+               std::vector<Patch>* patches) {
   const int columns = std::max(1, static_cast<int>(std::ceil(flat.width / side - 0.25)));
   const int rows = std::max(1, static_cast<int>(std::ceil(flat.height / side - 0.25)));
   const double width = flat.width / columns, height = flat.height / rows;
@@ -182,7 +191,9 @@ void add_cells(const Scene& scene, const FlatSurface& flat, double side, std::ve
       }
     }
   }
-  for (const std::vector<Piece>& pieces : cells) add_cell(scene, flat, pieces, patches);
+  const std::vector<CutEdge> close = edges_close_to(flat, edges, side);
+  for (const std::vector<Piece>& cell : cells)
+    for (const std::vector<Piece>& part : cut_cell(flat, close, cell)) add_cell(scene, flat, part, patches);
 }
 
 void add_clusters(const Scene& scene, const Surfaces& surfaces, std::vector<Patch>* patches) {
@@ -199,10 +210,11 @@ void add_clusters(const Scene& scene, const Surfaces& surfaces, std::vector<Patc
         .push_back({a, b, c, n, surfaces.area[t], t});
   }
   for (const auto& entry : clusters) {
-    Patch patch = patch_of(scene.materials[std::get<0>(entry.first)]);
+    Patch patch = patch_of(scene, std::get<0>(entry.first));
     if (entry.second.size() == 1) patch.pieces = {{entry.second[0].a, entry.second[0].b, entry.second[0].c}};
     finish(entry.second, &patch);
-    set_albedo(scene, scene.materials[std::get<0>(entry.first)], &patch);
+    set_albedo(scene, scene.materials[patch.material], &patch);
+    set_emission(scene, scene.materials[patch.material], &patch);
     patches->push_back(patch);
   }
 }
@@ -251,7 +263,8 @@ std::vector<Patch> quarters_of(const Scene& scene, const Surfaces& surfaces, con
 
 std::vector<Patch> make_patches(const Scene& scene, const Surfaces& surfaces) {
   std::vector<Patch> patches;
-  for (const FlatSurface& flat : surfaces.flat) add_cells(scene, flat, surfaces.patch_side, &patches);
+  const std::vector<CutEdge> edges = find_cut_edges(scene, surfaces);
+  for (const FlatSurface& flat : surfaces.flat) add_cells(scene, flat, surfaces.patch_side, edges, &patches);
   add_clusters(scene, surfaces, &patches);
   return patches;
 }

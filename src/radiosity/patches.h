@@ -16,7 +16,8 @@ struct Patch {
   // Mean over the samples; gloss and mirrors count as diffuse surfaces of their reflectance. At most kAlbedoMax, so
   // that a white room has a solution.
   Vec3d albedo;
-  Vec3d emission;  // radiance
+  Vec3d emission;  // radiance; the mean over the light samples
+  std::uint32_t material;
   Vec3d centre, normal;
   double area, radius;
   double uncovered = 1;                        // share that does not lie inside bodies; the area is without the rest

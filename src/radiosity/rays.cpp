@@ -9,19 +9,43 @@
 #include "base/fmath.h"
 #include "base/rng.h"
 #include "shade/lights.h"
+#include "shade/surface.h"
 
 namespace pocketray {
 namespace {
 
+constexpr double kDoubt = 1.5;  // standard errors of a share of random rays; those here err less
+
 Vec3 origin_of(const Receiver& from) { return to_float(from.point + from.normal * from.lift); }
+
+// A ray that looks through the backs of one-sided surfaces, as a viewer does.
+struct Look {
+  const SceneRays* rays;
+  Vec3 direction;
+};
+bool is_seen(const void* context, std::uint32_t triangle, float u, float v) {
+  const Look& look = *static_cast<const Look*>(context);
+  const FrameData& frame = look.rays->frame;
+  const Triangle& t = frame.scene->triangles[triangle];
+  const Material& m = frame.scene->materials[t.material()];
+  if (!m.double_sided) {
+    const Vec3& a = frame.positions[t.vertex(0)];
+    const Vec3 outward = cross(frame.positions[t.vertex(1)] - a, frame.positions[t.vertex(2)] - a);
+    if (is_culled(m, dot(outward, look.direction) <= 0)) return false;
+  }
+  const HitFilter* filter = look.rays->filter();
+  return !filter || filter->accept(filter->context, triangle, u, v);
+}
 
 }  // namespace
 
-bool is_visible(const SceneRays& rays, const Receiver& from, const Vec3d& to) {
+bool is_visible(const SceneRays& rays, const Receiver& from, const Vec3d& to, bool through_backs) {
   const Vec3 origin = origin_of(from);
   TraceStats stats;
   const Ray ray = {origin, to_float(to) - origin, 1};
-  return !rays.frame.accel_info->occluded(rays.frame.accel, ray, rays.filter(), &stats);
+  const Look look = {&rays, ray.direction};
+  const HitFilter seen = {is_seen, &look, rays.frame.filters_read_point};
+  return !rays.frame.accel_info->occluded(rays.frame.accel, ray, through_backs ? &seen : rays.filter(), &stats);
 }
 
 Outlook look_around(const SceneRays& rays, const Receiver& from, std::uint32_t count, std::uint32_t seed) {
@@ -50,13 +74,21 @@ Outlook look_around(const SceneRays& rays, const Receiver& from, std::uint32_t c
     const Triangle& t = rays.frame.scene->triangles[hit.triangle];
     const Vec3& a = rays.frame.positions[t.vertex(0)];
     const Vec3 outward = cross(rays.frame.positions[t.vertex(1)] - a, rays.frame.positions[t.vertex(2)] - a);
-    (dot(outward, direction) <= 0 ? outlook.front : outlook.back) += 1.0 / count;
+    const Material& m = rays.frame.scene->materials[t.material()];
+    const bool shines = m.double_sided && !is_zero(m.emission);  // a lamp's back is another front
+    (dot(outward, direction) <= 0 || shines ? outlook.front : outlook.back) += 1.0 / count;
   }
   return outlook;
 }
 
-double visible_share(const SceneRays& rays, const Receiver& from, const Patch& patch, double factor,
-                     std::uint32_t seed) {
+double credible_sum(double sum, double closed, std::uint32_t count) {
+  CHECK_GE(count, 1u);
+  const double error = kDoubt * std::sqrt(std::max(0.0, closed * (1 - closed)) / count);
+  return std::min(std::max(sum, closed - error), closed + error);
+}
+
+double visible_share(const SceneRays& rays, const Receiver& from, const Patch& patch, double factor, std::uint32_t seed,
+                     bool through_backs) {
   CHECK(factor > 0);
   const bool all = factor > 0.01;
   int seen = 0, tried = 0;
@@ -64,7 +96,7 @@ double visible_share(const SceneRays& rays, const Receiver& from, const Patch& p
     const PatchSample& sample = patch.samples[all ? i : static_cast<int>(seed % kPatchSamples)];
     const Vec3d to = sample.point + sample.normal * patch.lift;
     ++tried;
-    seen += is_visible(rays, from, to);
+    seen += is_visible(rays, from, to, through_backs);
   }
   return static_cast<double>(seen) / tried;
 }

@@ -13,12 +13,15 @@ struct SceneRays {
   const HitFilter* filter() const { return frame.filter_every_shadow ? &opaque : nullptr; }
 };
 
+constexpr std::uint32_t kPatchRays = 36;  // from each of a patch's samples, to see what surrounds it
+
 struct Receiver {
   Vec3d point, normal;
   double lift;
 };
 
-bool is_visible(const SceneRays& rays, const Receiver& from, const Vec3d& to);
+// `through_backs`: one-sided surfaces do not hide what is behind their backs.
+bool is_visible(const SceneRays& rays, const Receiver& from, const Vec3d& to, bool through_backs = false);
 
 // Shares of the cosine-weighted hemisphere over a receiver: no surface; a surface's front; the back of one.
 struct Outlook {
@@ -27,10 +30,14 @@ struct Outlook {
 // `seed` turns the pattern of `count` rays, a square number.
 Outlook look_around(const SceneRays& rays, const Receiver& from, std::uint32_t count, std::uint32_t seed);
 
+// The sum of a receiver's form factors as it should be, given the sum as found and the share of `count` rays that met
+// surfaces: that share, unless the sum lies within its error.
+double credible_sum(double sum, double closed, std::uint32_t count);
+
 // The share of a patch that a receiver sees, by up to kPatchSamples rays: all where it fills more than a hundredth of
 // the hemisphere, otherwise one.
-double visible_share(const SceneRays& rays, const Receiver& from, const Patch& patch, double factor,
-                     std::uint32_t seed);
+double visible_share(const SceneRays& rays, const Receiver& from, const Patch& patch, double factor, std::uint32_t seed,
+                     bool through_backs = false);
 
 // The irradiance of point, spot and directional lights.
 Vec3d light_irradiance(const SceneRays& rays, const Receiver& at);

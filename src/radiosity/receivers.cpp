@@ -73,8 +73,9 @@ void place_grid(const Scene& scene, const FlatSurface& flat, double spacing, boo
         on += inward * (kInset * std::min(step_s, step_t) / length(inward));
         on = onto_surface(scene, flat, on);
       }
-      places->nodes.push_back(
-          {static_cast<std::uint32_t>(solution->nodes.size()), {on, normal, kLift * std::min(step_s, step_t)}});
+      places->nodes.push_back({static_cast<std::uint32_t>(solution->nodes.size()),
+                               {on, normal, kLift * std::min(step_s, step_t)},
+                               flat.material});
       solution->nodes.push_back({});
     }
   const std::uint32_t index = static_cast<std::uint32_t>(solution->grids.size());

@@ -7,10 +7,12 @@ namespace pocketray {
 struct NodePlace {
   std::uint32_t node;
   Receiver at;
+  std::uint32_t material;
 };
 struct ValuePlace {
   std::uint32_t value;
   Receiver at;
+  std::uint32_t material;
 };
 
 struct Places {

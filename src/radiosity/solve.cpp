@@ -13,7 +13,7 @@
 namespace pocketray {
 namespace {
 
-constexpr std::uint32_t kPatchRays = 36, kNodeRays = 64;
+constexpr std::uint32_t kNodeRays = 64;
 constexpr std::uint32_t kRefined = 4;  // largest ratio of numbers of patches by refinement
 constexpr double kBackSees = 0.05;     // share of fronts around a back that is worth light of its own
 constexpr double kCovered = 0.9;       // share of back faces around a node that lies inside a body
@@ -54,25 +54,32 @@ Surfaces without_grids(Surfaces surfaces) {
   return surfaces;
 }
 
-// What arrives at a receiver from all patches and from outside, as irradiance / π. Negative x: it lies inside a body.
-Vec3d gather(const SceneRays& rays, const std::vector<Patch>& patches, const std::vector<Vec3d>& radiance,
-             const Receiver& at, std::uint32_t seed) {
+// Light that leaves the patches. Emission reaches pixels as direct light, except those of its own material.
+struct PatchLight {
+  const std::vector<Patch>& patches;
+  std::vector<Vec3d> all, reflected;
+};
+
+// What arrives at a receiver of a material from all patches and from outside, as irradiance / π. Negative x: it lies
+// inside a body.
+Vec3d gather(const SceneRays& rays, const PatchLight& light, const Receiver& at, std::uint32_t material,
+             std::uint32_t seed) {
   const Outlook outlook = look_around(rays, at, kNodeRays, seed);
   if (outlook.back > kCovered) return {-1, 0, 0};
   Vec3d sum = {0, 0, 0};
   double seen = 0;
-  for (const Patch& patch : patches) {
+  for (const Patch& patch : light.patches) {
     const double factor = patch_form_factor(at.point, at.normal, patch);
     if (!(factor > 0)) continue;
-    const double share = factor * visible_share(rays, at, patch, factor, seed);
-    const std::size_t i = static_cast<std::size_t>(&patch - patches.data());
-    sum += radiance[i] * share, seen += share;
+    const double share = factor * visible_share(rays, at, patch, factor, seed, true);
+    const std::size_t i = static_cast<std::size_t>(&patch - light.patches.data());
+    sum += (patch.material == material ? light.all : light.reflected)[i] * share, seen += share;
   }
   // Surfaces fill the directions that are not open: this takes out the error of approximate factors and of visibility
-  // by few rays.
+  // by few rays, unless that share is the less certain.
   const double closed = 1 - outlook.open;
   if (closed > 0.5 && seen < kSeen * closed) return {-1, 0, 0};
-  if (seen > 0) sum = sum * std::min(2.0, closed / seen);
+  if (seen > 0) sum = sum * std::min(2.0, credible_sum(seen, closed, kNodeRays) / seen);
   return sum + to_double(rays.frame.scene->info.background) * outlook.open;
 }
 
@@ -158,9 +165,10 @@ Status solve_radiosity(const FrameData& frame, const RadiosityOptions& options, 
   settle(factors, options.converged, 100 * factors.count, &exchange);
   solution->patch_count = factors.count, solution->shots = exchange.shots;
   solution->unshot = unshot_magnitude(exchange) / exchange.emitted;
-  std::vector<Vec3d> reflected = exchange.radiance;  // emission reaches pixels as direct light
+  PatchLight light_of = {patches, exchange.radiance, exchange.radiance};
   for (std::size_t i = 0; i < patches.size() && !options.stores_direct_light; ++i)
-    if (!patches[i].is_back || patches[i].double_sided) reflected[i] = reflected[i] - patches[i].emission;
+    if (!patches[i].is_back || patches[i].double_sided)
+      light_of.reflected[i] = light_of.reflected[i] - patches[i].emission;
 
   std::vector<char> front(scene.triangles.count, 1), back(scene.triangles.count, 0);
   for (const Patch& patch : patches)
@@ -176,7 +184,8 @@ Status solve_radiosity(const FrameData& frame, const RadiosityOptions& options, 
   parallel_for(count, options.threads, [&](std::uint32_t i) {
     if (stop) return;
     const Receiver& at = i < node_count ? places.nodes[i].at : places.values[i - node_count].at;
-    Vec3d light = gather(rays, patches, reflected, at, i);
+    const std::uint32_t material = i < node_count ? places.nodes[i].material : places.values[i - node_count].material;
+    Vec3d light = gather(rays, light_of, at, material, i);
     const bool covered = light.x < 0;
     if (options.stores_direct_light && !covered) light += light_irradiance(rays, at) * (1 / kPi);
     if (i < node_count) {

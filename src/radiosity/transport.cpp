@@ -9,6 +9,8 @@
 namespace pocketray {
 namespace {
 
+constexpr double kClose = 0.4;  // of the distance up to which patches are near: they touch, or face each other
+
 double sum_of(const Vec3d& v) { return v.x + v.y + v.z; }
 
 // What all unshot light would add everywhere if it were spread evenly, with all its reflections.
@@ -21,21 +23,25 @@ Vec3d ambient_estimate(const Exchange& e) {
   return result;
 }
 
-// A few rounds of averaging Aᵢ·Fᵢⱼ with Aⱼ·Fⱼᵢ and scaling rows to their sums.
+// Averages Aᵢ·Fᵢⱼ with Aⱼ·Fⱼᵢ, each found from points of its first patch, so that the smaller one's is the better; then
+// a few rounds of scaling rows to their sums.
 void make_consistent(const std::vector<Patch>& patches, const std::vector<double>& closed, FormFactors* f) {
   const std::uint32_t n = f->count;
   std::vector<double> scale(n);
   for (std::uint32_t i = 0; i < n; ++i)
     for (std::uint32_t j = 0; j < i; ++j) {
       float &ij = f->rows[std::size_t(i) * n + j], &ji = f->rows[std::size_t(j) * n + i];
-      const double flow = 0.5 * (static_cast<double>(ij) * patches[i].area + static_cast<double>(ji) * patches[j].area);
+      const double a = patches[i].area, b = patches[j].area, own = b * b / (a * a + b * b);
+      const double flow = own * static_cast<double>(ij) * a + (1 - own) * static_cast<double>(ji) * b;
       ij = ji = static_cast<float>(flow);
     }
+  std::vector<double> wanted(n);
   for (int round = 0; round < 24; ++round) {
     for (std::uint32_t i = 0; i < n; ++i) {
       double sum = 0;
       for (std::uint32_t j = 0; j < n; ++j) sum += static_cast<double>(f->at(i, j));
-      scale[i] = sum > 0 ? std::sqrt(closed[i] * patches[i].area / sum) : 0;
+      if (round == 0) wanted[i] = credible_sum(sum / patches[i].area, closed[i], kPatchSamples * kPatchRays);
+      scale[i] = sum > 0 ? std::sqrt(wanted[i] * patches[i].area / sum) : 0;
     }
     for (std::uint32_t i = 0; i < n; ++i)
       for (std::uint32_t j = 0; j < n; ++j) f->rows[std::size_t(i) * n + j] *= static_cast<float>(scale[i] * scale[j]);
@@ -61,11 +67,13 @@ FormFactors find_form_factors(const SceneRays& rays, const std::vector<Patch>& p
       if (i == j) continue;
       const Vec3d way = patches[j].centre - patches[i].centre;
       const double near = 3 * (patches[i].radius + patches[j].radius);
-      const bool is_near = dot(way, way) < near * near;
+      const bool is_near = dot(way, way) < near * near, is_close = dot(way, way) < kClose * kClose * near * near;
       double sum = 0;
       int samples = 0;
-      for (int k = 0; k < kPatchSamples; k += is_near ? 1 : 2) {
-        const PatchSample& at = patches[i].samples[k];
+      const int count = is_close ? static_cast<int>(patches[i].light_samples.size()) : kPatchSamples;
+      for (int k = 0; k < count; k += is_near ? 1 : 2) {
+        const PatchSample& at =
+            is_close ? patches[i].light_samples[static_cast<std::size_t>(k)] : patches[i].samples[k];
         const Receiver from = {at.point, at.normal, patches[i].lift};
         const double factor = patch_form_factor(at.point, at.normal, patches[j]);
         ++samples;

@@ -3,6 +3,7 @@
 #include <cstring>
 #include <limits>
 
+#include "accel/triangle.h"
 #include "base/simd.h"
 #include "shade/texture.h"
 
@@ -76,6 +77,18 @@ struct LeafHits {
 };
 void spill(const Double4& a, double* values) { std::memcpy(values, &a, sizeof(a)); }
 
+// Whether a ray that hits a triangle close by begins on its plane, as in accel/triangle.h.
+bool is_on_plane(const ReferenceLeaf& leaf, int lane, const Shear& s) {
+  alignas(32) double origin[3][4], inverse[4];
+  spill(s.origin_x, origin[0]), spill(s.origin_y, origin[1]), spill(s.origin_z, origin[2]), spill(s.sz, inverse);
+  Vec3d corner[3];
+  for (int i = 0; i < 3; ++i)
+    corner[i] = {static_cast<double>(leaf.corner[i][s.x][lane]) - origin[0][0],
+                 static_cast<double>(leaf.corner[i][s.y][lane]) - origin[1][0],
+                 static_cast<double>(leaf.corner[i][s.z][lane]) - origin[2][0]};
+  return begins_on_plane(static_cast<float>(inverse[0]), corner[0], corner[1], corner[2]);
+}
+
 // Bits of the triangles of a leaf that the line of the ray meets within (t_min, t_max].
 unsigned meet(const ReferenceLeaf& leaf, const Shear& s, double t_min, double t_max, LeafHits* hits) {
   Double4 x[3], y[3], z[3];
@@ -91,7 +104,14 @@ unsigned meet(const ReferenceLeaf& leaf, const Shear& s, double t_min, double t_
   Double4 sum = a + b + c;
   Double4 t = (a * z[0] + b * z[1] + c * z[2]) * s.sz / sum;  // NaN if the sum is zero: no hit
   unsigned met = bits(inside & (Double4::splat(t_min) < t) & (t <= Double4::splat(t_max)));
-  if (met) spill(t, hits->t), spill(b / sum, hits->u), spill(c / sum, hits->v);
+  if (!met) return 0;
+  spill(t, hits->t), spill(b / sum, hits->u), spill(c / sum, hits->v);
+  Double4 reach = max(max(max(z[0], zero - z[0]), max(z[1], zero - z[1])), max(z[2], zero - z[2]));
+  Double4 close = reach * max(s.sz, zero - s.sz) * Double4::splat(kCloseHit);
+  for (unsigned left = met & bits(t < close); left; left &= left - 1) {
+    const int i = __builtin_ctz(left);
+    if (is_on_plane(leaf, i, s)) met &= ~(1u << i);
+  }
   return met;
 }
 

@@ -134,3 +134,38 @@ TEST_CASE("default_lights_come_only_where_nothing_gives_light") {
   dark->bind();
   CHECK_FALSE(has_light(dark->scene));
 }
+
+namespace {
+
+std::uint32_t add_emitter(GeneratedScene* s, float emission) {
+  Material m;
+  m.diffuse = {0, 0, 0}, m.emission = {emission, emission, emission};
+  return add_material(s, m);
+}
+
+}  // namespace
+
+// Goal: a lamp is one however dim, and gets no key and fill; a glow on a body is none. Method: a lamp above a floor and
+// in a room, by powers of two of its emission; a small light on the outside of a box, which falls on nothing.
+TEST_CASE("dim_lamps_light_a_model_and_a_glow_does_not") {
+  for (float emission : {1e-6f, .01f, .5f, 1.0f, 2.0f})
+    for (bool room : {false, true}) {
+      CAPTURE(emission);
+      CAPTURE(room);
+      GeneratedScene s;
+      const std::uint32_t white = add_material(&s, {});
+      if (room)
+        add_box(&s, {-1, 0, -1}, {1, 1.2f, 1}, white, true);
+      else
+        add_quad(&s, {-1, 0, 1}, {1, 0, 1}, {1, 0, -1}, {-1, 0, -1}, white);
+      add_quad(&s, {-.3f, 1, -.3f}, {.3f, 1, -.3f}, {.3f, 1, .3f}, {-.3f, 1, .3f}, add_emitter(&s, emission));
+      s.bind();
+      CHECK(lights_itself(s.scene));
+    }
+  GeneratedScene glow;
+  add_box(&glow, {-1, 0, -1}, {1, 1.2f, 1}, add_material(&glow, {}));
+  add_quad(&glow, {-.2f, .5f, 1.01f}, {.2f, .5f, 1.01f}, {.2f, .7f, 1.01f}, {-.2f, .7f, 1.01f}, add_emitter(&glow, 1));
+  for (Material& m : glow.materials) m.double_sided = 0;
+  glow.bind();
+  CHECK_FALSE(lights_itself(glow.scene));
+}

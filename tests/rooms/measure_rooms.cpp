@@ -1,0 +1,99 @@
+// measure_rooms [--random N] [--gaps] [--directions N] [--patches N] [--lights] [FILE...]: the table of `make rooms`.
+// Indirect light of rooms against full light transport: relative errors of regions of the picture by radiosity and, on
+// request, by instant radiosity with more and more lights. See tests/radiosity/reference/room_light.h.
+#define DOCTEST_CONFIG_IMPLEMENT
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <string>
+
+#ifdef POCKETRAY_HAVE_IMPORT
+#include "import/import.h"
+#endif
+#include "radiosity/reference/room_light.h"
+
+using namespace pocketray;
+
+namespace {
+
+constexpr std::uint32_t kLightCounts[] = {32, 64, 128, 256, 512};
+
+struct Measurement {
+  std::uint32_t directions = 256, patches = 1200;
+  bool lights = false;
+  int rooms = 0, failed = 0;
+  double sum_of_means = 0, worst = 0;
+
+  void measure(const char* name, const Scene& scene) {
+    const Settings settings = room_settings(64, 48);
+    const RoomLight truth = true_light(scene, settings, directions);
+    const RoomErrors e = compare_light(stored_light(scene, settings, patches, 2), truth);
+    const bool holds = e.mean <= .03 && std::fabs(e.worst) <= .1;
+    ++rooms, failed += !holds, sum_of_means += e.mean;
+    if (std::fabs(e.worst) > std::fabs(worst)) worst = e.worst;
+    std::printf("| %s | %.1f %% | %+.1f %% ± %.1f at %u, %u | %+.1f %% | %.1f %% |", name, 100 * e.mean, 100 * e.worst,
+                100 * e.worst_noise, static_cast<unsigned>(e.region % truth.columns),
+                static_cast<unsigned>(e.region / truth.columns), 100 * e.total, 100 * e.noise);
+    if (lights)
+      for (std::uint32_t count : kLightCounts)
+        std::printf(" %.1f |", 100 * compare_light(instant_light(scene, settings, count), truth).mean);
+    std::printf("%s\n", holds ? "" : "  <-");
+    std::fflush(stdout);
+  }
+};
+
+#ifdef POCKETRAY_HAVE_IMPORT
+void measure_file(const std::string& path, Measurement* m) {
+  ImportedScene imported;
+  const Status status = import_scene(path, ImportOptions(), &imported);
+  if (!status.ok) {
+    std::printf("| %s | skipped: %s |\n", path.c_str(), status.message);
+    return;
+  }
+  m->measure(path.substr(path.rfind('/') + 1).c_str(), imported.scene);
+}
+#endif
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  doctest::Context context;
+  context.setAsDefaultForAssertsOutOfTestCases();
+  Measurement m;
+  std::printf("| room | mean | worst | all light | noise |\n|---|---|---|---|---|\n");
+  for (int i = 1; i < argc; ++i) {
+    const bool more = i + 1 < argc;
+    if (!std::strcmp(argv[i], "--directions") && more) {
+      m.directions = static_cast<std::uint32_t>(std::atoi(argv[++i]));
+    } else if (!std::strcmp(argv[i], "--patches") && more) {
+      m.patches = static_cast<std::uint32_t>(std::atoi(argv[++i]));
+    } else if (!std::strcmp(argv[i], "--lights")) {
+      m.lights = true;
+    } else if (!std::strcmp(argv[i], "--random") && more) {
+      const int count = std::atoi(argv[++i]);
+      for (int seed = 1; seed <= count; ++seed)
+        m.measure(("random " + std::to_string(seed)).c_str(), random_room(static_cast<std::uint64_t>(seed))->scene);
+    } else if (!std::strcmp(argv[i], "--seed") && more) {
+      const int seed = std::atoi(argv[++i]);
+      m.measure(("random " + std::to_string(seed)).c_str(), random_room(static_cast<std::uint64_t>(seed))->scene);
+    } else if (!std::strcmp(argv[i], "--gaps")) {
+      for (bool two_sided : {true, false})
+        for (float gap : {.5f, .3f, .1f, .05f, .02f, .01f, .005f, .002f, .001f}) {
+          char name[64];
+          std::snprintf(name, sizeof name, "lamp %g below, %s-sided", static_cast<double>(gap),
+                        two_sided ? "two" : "one");
+          m.measure(name, room_with_lamp(gap, two_sided)->scene);
+        }
+    } else {
+#ifdef POCKETRAY_HAVE_IMPORT
+      measure_file(argv[i], &m);
+#endif
+    }
+  }
+  std::printf("%d rooms, %d beyond 3 %% in the mean or 10 %% anywhere; mean of means %.2f %%, worst %+.1f %%\n",
+              m.rooms, m.failed, m.rooms ? 100 * m.sum_of_means / m.rooms : 0.0, 100 * m.worst);
+  return 0;
+}
