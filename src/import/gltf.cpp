@@ -77,6 +77,7 @@ void import_gltf(const std::string& path, Bytes bytes, SceneBuilder* builder) {
   file.materials.assign(file.model.materials.size(), kNone);
   file.uv_sets.resize(file.model.materials.size());
   gltf_visit_nodes(&file);
+  gltf_count_geometry(file);
   gltf_mark_movers(&file);
   gltf_mark_joints(&file);
   gltf_export_nodes(&file);
