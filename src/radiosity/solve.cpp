@@ -149,6 +149,7 @@ Status solve_radiosity(const FrameData& frame, const RadiosityOptions& options, 
     first[i] = (shines ? patches[i].emission : Vec3d{0, 0, 0}) +
                patches[i].albedo * (irradiance * (1 / kPi) + to_double(scene.info.background) * looks[i].open);
   });
+  solution->patch_count = static_cast<std::uint32_t>(patches.size());
   constexpr double kFactorsShare = 0.3;
   const FormFactors factors = find_form_factors(rays, patches, closed, options.threads,
                                                 [&](double share) { return progress(kFactorsShare * share); });
@@ -156,7 +157,7 @@ Status solve_radiosity(const FrameData& frame, const RadiosityOptions& options, 
   Exchange exchange = start_exchange(area, albedo, first);
   if (!(exchange.emitted > 0)) return failure("no light reaches a surface: there is none to solve for");
   settle(factors, options.converged, 100 * factors.count, &exchange);
-  solution->patch_count = factors.count, solution->shots = exchange.shots;
+  solution->shots = exchange.shots;
   solution->unshot = unshot_magnitude(exchange) / exchange.emitted;
   std::vector<Vec3d> reflected = exchange.radiance;  // emission reaches pixels as direct light
   for (std::size_t i = 0; i < patches.size() && !options.stores_direct_light; ++i)
