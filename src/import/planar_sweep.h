@@ -81,6 +81,7 @@ class PlanarSweep {
   bool pass();
   void begin_pass();
   void end_pass();
+  void unite_equal_points();
   void visit(std::uint32_t point);
   void take_arriving(std::uint32_t point, Status::iterator first, Status::iterator last);
   void take_leaving(std::uint32_t point);

@@ -77,7 +77,7 @@ double direction(const Vec2& from, double u, double v) {
   return std::atan2(v - static_cast<double>(from.y), u - static_cast<double>(from.x));
 }
 double turn(double from, double to) {
-  const double angle = to - from;
+  const double angle = std::fmod(to - from, 2 * kPi);
   return angle < 0 ? angle + 2 * kPi : angle;
 }
 
@@ -86,7 +86,11 @@ double turn(double from, double to) {
 class CornersAtPoints {
  public:
   CornersAtPoints(const std::vector<Vec2>& loop, const PlanarSweep& sweep)
-      : loop_(loop), sweep_(sweep), first_(sweep.points().size(), kNone), next_(loop.size(), kNone) {
+      : loop_(loop),
+        sweep_(sweep),
+        steps_left_(64 * loop.size() + 1000),
+        first_(sweep.points().size(), kNone),
+        next_(loop.size(), kNone) {
     for (std::size_t i = loop.size(); i-- > 0;) {
       std::uint32_t& first = first_[sweep.points_of_corners()[i]];
       next_[i] = first;
@@ -108,7 +112,7 @@ class CornersAtPoints {
     const double from = direction(here, static_cast<double>(a.x), static_cast<double>(a.y));
     const double to = direction(here, static_cast<double>(b.x), static_cast<double>(b.y));
     const double middle = from + turn(from, to) / 2;
-    for (std::uint32_t corner = first; corner != kNone; corner = next_[corner])
+    for (std::uint32_t corner = first; corner != kNone && steps_left_ > 0; corner = next_[corner])
       if (holds(corner, middle)) return corner;
     return first;
   }
@@ -122,14 +126,16 @@ class CornersAtPoints {
       const std::size_t step = side == 0 ? 1 : loop_.size() - 1;
       std::size_t other = corner;
       do other = (other + step) % loop_.size();
-      while (other != corner && sweep_.points_of_corners()[other] == sweep_.points_of_corners()[corner]);
+      while (steps_left_ > 0 && --steps_left_ > 0 && other != corner &&
+             sweep_.points_of_corners()[other] == sweep_.points_of_corners()[corner]);
       ends[side] = direction(here, static_cast<double>(loop_[other].x), static_cast<double>(loop_[other].y));
     }
-    return turn(ends[0], middle + (middle < ends[0] ? 2 * kPi : 0)) < turn(ends[0], ends[1]);
+    return turn(ends[0], middle) < turn(ends[0], ends[1]);
   }
 
   const std::vector<Vec2>& loop_;
   const PlanarSweep& sweep_;
+  mutable std::size_t steps_left_;           // then the first corner at a point has to do
   std::vector<std::uint32_t> first_, next_;  // by point; by corner
 };
 

@@ -191,7 +191,9 @@ static std::string warning_line(const SceneBuilder& builder) {
   for (const std::string& item : builder.unused) line += (line.empty() ? "not used: " : ", ") + item;
   if (builder.broken_face_count > 0)
     line += (line.empty() ? "" : "; ") + std::to_string(builder.broken_face_count) +
-            " faces have vertices that are not finite or too far away and are left out (--strict refuses them)";
+            (builder.broken_face_count == 1 ? " face is left out, as a vertex is"
+                                            : " faces are left out, as vertices are") +
+            " not finite or beyond 1e18 (--strict names the first)";
   for (const std::string& item : builder.remarks) line += (line.empty() ? "" : "; ") + item;
   return line;
 }
@@ -251,7 +253,11 @@ static bool has_texture(const Material& material) {
 
 void finish_scene(SceneBuilder* builder, const std::string& name, ImportedScene* result) {
   SceneArrays& out = *builder->out;
-  if (out.triangles.empty()) fail_import("no triangles to render; export meshes with faces");
+  if (out.triangles.empty()) {
+    const std::string why = warning_line(*builder);
+    fail_import("no triangles to render; export meshes with faces%s%s%s", why.empty() ? "" : " (", why.c_str(),
+                why.empty() ? "" : ")");
+  }
   if (out.materials.empty()) out.materials.emplace_back();
   std::size_t count = out.positions.size();
   if (!out.normals.empty()) out.normals.resize(count, Vec3{0, 0, 0});

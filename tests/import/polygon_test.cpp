@@ -193,6 +193,31 @@ TEST_CASE("hard_68_polygons_of_many_corners_take_little_time") {
   CHECK_FALSE(triangulate_polygon(flat(tangle), &made));
 }
 
+// Goal: very many corners at one place take little time, too. Method: a flower whose 50,000 petals meet in the middle,
+// and a corner that is named 100,000 times before the rest of a fan.
+TEST_CASE("hard_68_many_corners_at_one_place_take_little_time") {
+  Loop flower;
+  for (int i = 0; i < 50000; ++i) {
+    flower.push_back({0, 0});
+    for (double part : {0.1, 0.9}) {
+      const double angle = 6.283185307179586 * (i + part) / 50000;
+      flower.push_back({static_cast<float>(std::cos(angle)), static_cast<float>(std::sin(angle))});
+    }
+  }
+  Loop fan(100000, Vec2{0, 0});
+  for (int i = 0; i < 100000; ++i) {
+    const double angle = 3.0 * i / 100000, radius = i % 2 ? 1 : 0.9;
+    fan.push_back({static_cast<float>(radius * std::cos(angle)), static_cast<float>(radius * std::sin(angle))});
+  }
+  for (const Loop& loop : {flower, fan}) {
+    PolygonTriangles made;
+    const auto begin = std::chrono::steady_clock::now();
+    REQUIRE(triangulate_polygon(flat(loop), &made));
+    CHECK(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count() < 20);
+    CHECK(area_of(flat(loop), made) == doctest::Approx(shoelace(loop)).epsilon(1e-6));
+  }
+}
+
 // Goal: corners at one place keep their own attributes. Method: a square with a keyhole whose slit is at corners 0 and
 // 4 and at 5 and 9: each triangle with such a corner has the one on its side.
 TEST_CASE("polygon_corners_at_one_place_are_told_apart") {
