@@ -193,6 +193,10 @@ bool triangulate_polygon(const std::vector<Vec3>& positions, PolygonTriangles* r
   const std::vector<std::uint32_t>& triangles = sweep.triangles();
   for (std::size_t t = 0; t < triangles.size(); t += 3)
     for (int k = 0; k < 3; ++k) result->corners.push_back(corners.find(&triangles[t], k));
+  // A corner at the place of the next has a triangle without area, so that a polygon of n corners has n − 2.
+  for (std::uint32_t i = 0; i < count && !triangles.empty(); ++i)
+    if (sweep.points_of_corners()[i] == sweep.points_of_corners()[(i + 1) % count])
+      result->corners.insert(result->corners.end(), {i, (i + 1) % count, (i + 2) % count});
   for (const PlanarSweep::Crossing& crossing : sweep.crossings()) {
     PolygonCrossing made = {{crossing.edges[0], crossing.edges[1]}, {0, 0}};
     for (int i = 0; i < 2; ++i) made.along[i] = along_edge(loop, made.edges[i], sweep.points()[crossing.point]);
