@@ -372,23 +372,11 @@ PlanarSweep::Chain PlanarSweep::take_above_recent(Chain* chain) {
   return upper;
 }
 
-// A fan about the point, except for the chain's corners that lie on the two edges ending there: these are connected
-// with a corner on the other side.
+// A fan about the point, which sees all of the chain: a concave chain with sides on both edges that end here.
 void PlanarSweep::close(const Chain& chain, std::uint32_t point) {
-  run_.clear();
-  for (std::uint32_t node = chain.low; node != kNone; node = nodes_[node].above) run_.push_back(nodes_[node].point);
-  const std::size_t end = run_.size() - 1;
-  auto sees = [&](std::size_t i) { return orientation(points_[run_[i]], points_[point], points_[run_[i + 1]]) > 0; };
-  std::size_t low = 0, high = end;
-  while (low < end && !sees(low)) ++low;
-  while (high > low && !sees(high - 1)) --high;
-  for (std::size_t i = low; i < high; ++i) {
-    std::uint32_t base = run_[i];
-    for (std::size_t k = low; i == low && k > 0; --k) emit(run_[k], base = run_[k - 1], run_[i + 1]);
-    std::uint32_t top = run_[i + 1];
-    for (std::size_t k = high; i + 1 == high && k < end; ++k) emit(base, run_[k + 1], top), top = run_[k + 1];
-    emit(base, point, top);
-  }
+  std::uint32_t node = chain.low;
+  for (std::uint32_t above; (above = nodes_[node].above) != kNone; node = above)
+    emit(nodes_[node].point, point, nodes_[above].point);
 }
 
 }  // namespace pocketray

@@ -108,7 +108,6 @@ class PlanarSweep {
   std::vector<Node> nodes_;
   std::vector<Split> splits_;                      // for the next pass
   std::vector<std::uint32_t> arriving_, leaving_;  // edges at the point visited, from below
-  std::vector<std::uint32_t> run_;                 // the chain being closed
   Status status_{Below{this}};
   std::vector<std::pair<std::uint32_t, std::uint32_t>> equal_;  // points that the next pass takes for one
   std::size_t edge_count_max_ = 0;
