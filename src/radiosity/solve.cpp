@@ -6,6 +6,7 @@
 
 #include "base/check.h"
 #include "base/fmath.h"
+#include "radiosity/barriers.h"
 #include "radiosity/corners.h"
 #include "radiosity/refine.h"
 #include "radiosity/tangents.h"
@@ -198,6 +199,7 @@ Status solve_radiosity(const FrameData& frame, const RadiosityOptions& options, 
     if (!progress(kFactorsShare + (1 - kFactorsShare) * ++done / count)) stop = true;
   });
   if (stop) return failure("interrupted");
+  keep_behind_barriers(rays, places.nodes, known, solution);
   for (const RadiosityGrid& grid : solution->grids) {
     RadiosityNode* nodes = &solution->nodes[grid.node_begin];
     const auto begin = known.begin() + grid.node_begin;
