@@ -18,6 +18,8 @@ constexpr std::uint32_t kNodeRays = 64;
 constexpr std::uint32_t kRefined = 4;  // largest ratio of numbers of patches by refinement
 constexpr double kBackSees = 0.05;     // share of fronts around a back that is worth light of its own
 constexpr double kCovered = 0.9;       // share of back faces around a node that lies inside a body
+constexpr double kBesideBacks =
+    0.5;                       // share of back faces from which on a node may lie inside, and sees none through them
 constexpr double kSeen = 0.1;  // share of patches in what closes a node's surroundings, below which it lies inside, too
 
 Outlook look_around_patch(const SceneRays& rays, const Patch& patch, std::uint32_t seed) {
@@ -67,12 +69,13 @@ Vec3d gather(const SceneRays& rays, const PatchLight& light, const Receiver& at,
              std::uint32_t seed) {
   const Outlook outlook = look_around(rays, at, kNodeRays, seed);
   if (outlook.back > kCovered) return {-1, 0, 0};
+  const bool through_backs = outlook.back < kBesideBacks;
   Vec3d sum = {0, 0, 0};
   double seen = 0;
   for (const Patch& patch : light.patches) {
     const double factor = patch_form_factor(at.point, at.normal, patch);
     if (!(factor > 0)) continue;
-    const double share = factor * visible_share(rays, at, patch, factor, seed, true);
+    const double share = factor * visible_share(rays, at, patch, factor, seed, through_backs);
     const std::size_t i = static_cast<std::size_t>(&patch - light.patches.data());
     sum += (patch.material == material ? light.all : light.reflected)[i] * share, seen += share;
   }

@@ -59,17 +59,15 @@ TEST_CASE("plates_that_fill_the_cross_section_let_nothing_through") {
   }
 }
 
-// Goal: more virtual lights do not err more. Method: the lamp .01 below the ceiling, whose back lights the gap: 64, 256
-// and 512 lights; a tenth of the error is left to chance.
-TEST_CASE("more_virtual_lights_do_not_err_more") {
+// Goal: many virtual lights do not err more than few. Method: the lamp .01 below the ceiling, whose back lights the
+// gap; 32 and 512 lights, whose placement alone errs by a few tenths.
+TEST_CASE("many_virtual_lights_do_not_err_more_than_few") {
   const auto room = room_with_lamp(.01f, true);
   const Settings settings = room_settings(64, 48);
-  const RoomLight truth = true_light(room->scene, settings, 36);
-  double before = 1e9;
-  for (std::uint32_t count : {64u, 256u, 512u}) {
-    const RoomErrors e = compare_light(instant_light(room->scene, settings, count), truth);
-    MESSAGE(count, " lights: mean ", e.mean, ", all light ", e.total);
-    CHECK(e.mean < before * 1.1 + .01);
-    before = e.mean;
-  }
+  const RoomLight truth = stored_light(room->scene, settings, 1200, 2);
+  const RoomErrors few = compare_light(instant_light(room->scene, settings, 32), truth),
+                   many = compare_light(instant_light(room->scene, settings, 512), truth);
+  MESSAGE("32 lights: mean ", few.mean, ", all light ", few.total, "; 512: ", many.mean, ", ", many.total);
+  CHECK(many.mean < few.mean);
+  CHECK(std::fabs(many.total) < .22);
 }
