@@ -65,11 +65,11 @@ struct PatchLight {
 
 // What arrives at a receiver of a material from all patches and from outside, as irradiance / π. Negative x: it lies
 // inside a body.
-Vec3d gather(const SceneRays& rays, const PatchLight& light, const Receiver& at, std::uint32_t material,
+Vec3d gather(const SceneRays& rays, const PatchLight& light, const Receiver& at, std::uint32_t material, bool on_grid,
              std::uint32_t seed) {
   const Outlook outlook = look_around(rays, at, kNodeRays, seed);
   if (outlook.back > kCovered) return {-1, 0, 0};
-  const bool through_backs = outlook.back < kBesideBacks;
+  const bool through_backs = on_grid && outlook.back < kBesideBacks;
   Vec3d sum = {0, 0, 0};
   double seen = 0;
   for (const Patch& patch : light.patches) {
@@ -189,7 +189,7 @@ Status solve_radiosity(const FrameData& frame, const RadiosityOptions& options, 
     if (stop) return;
     const Receiver& at = i < node_count ? places.nodes[i].at : places.values[i - node_count].at;
     const std::uint32_t material = i < node_count ? places.nodes[i].material : places.values[i - node_count].material;
-    Vec3d light = gather(rays, light_of, at, material, i);
+    Vec3d light = gather(rays, light_of, at, material, i < node_count, i);
     const bool covered = light.x < 0;
     if (options.stores_direct_light && !covered) light += light_irradiance(rays, at) * (1 / kPi);
     if (i < node_count) {
