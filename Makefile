@@ -42,7 +42,7 @@ endif
 BUILD := $(if $(CROSS_PREFIX),build-$(CLASS)-$(notdir $(CROSS_PREFIX:%-=%)),build$(CLASS:%=-%))
 POCKETRAY := $(BUILD)/pocketray
 
-.PHONY: all run setup-tests test test-box hardcases softfloat mutants trials faults demo-split split-table motion-table fuzz flips bench bench-embree bench-povray bench-device contact-sheet mach-bands package format tidy clean install help setup configure
+.PHONY: all run setup-tests test test-box hardcases softfloat mutants trials faults demo-split split-table motion-table fuzz flips bench bench-embree bench-povray bench-device contact-sheet mach-bands rooms package format tidy clean install help setup configure
 all: configure
 	cmake --build $(BUILD) -j$(JOBS)$(if $(CLASS), --target pocketray)
 ifneq ($(CLASS),)
@@ -205,6 +205,13 @@ contact-sheet: configure
 	cmake --build $(BUILD) -j$(JOBS) --target pocketray
 	@tests/materials/contact_sheet.py $(POCKETRAY) --folder $(BUILD)/contact-sheet $(if $(MODELS),--models $(MODELS)) \
 	  $(JSON:%=--json %) $(SHEET_OPTIONS)
+
+# Indirect light of rooms against full light transport: some from a seed, and those of strangers where they are.
+ROOMS ?= 50
+ROOM_FILES ?= $(wildcard ../shared/scenes/cornell/mcguire/*.obj ../shared/scenes/cornell/embree/*.obj ../shared/scenes/cornell/*.glb)
+rooms: setup-tests configure
+	cmake --build $(BUILD) -j$(JOBS) --target measure_rooms
+	$(BUILD)/measure_rooms --directions 256 --lights --gaps --random $(ROOMS) $(ROOM_FILES)
 
 # Mach bands of radiosity by each reconstruction: a table, and the cube as [Bastos92] figs. 6 and 7 show it.
 mach-bands: setup-tests configure

@@ -11,6 +11,8 @@ void open_standard_streams();
 
 // From here on, a write to a pipe without a reader fails instead of ending the program.
 void survive_closed_pipes();
+// True if standard output is a pipe or socket whose reader has gone.
+bool is_output_closed();
 
 // From here on, standard output and error go to the end of that file, which is created if missing.
 bool log_to_file(const char* path, FileError* error);

@@ -1,4 +1,4 @@
-// The real system calls, and the clock: CLOCK_MONOTONIC, which is never set back.
+// The real system calls, and the clocks: CLOCK_MONOTONIC, which is never set back, and that of a thread.
 #include <errno.h>
 #include <fcntl.h>
 #include <sys/ioctl.h>
@@ -6,6 +6,7 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "platform/cpu_time.h"
 #include "platform/linux/driver.h"
 
 namespace platform {
@@ -21,11 +22,13 @@ void* system_map(int file, std::size_t bytes) {
 
 int system_poll(pollfd* files, int count) { return ::poll(files, static_cast<nfds_t>(count), 0); }
 
-std::uint64_t system_now_ns() {
+std::uint64_t now_by(clockid_t clock) {
   timespec now;
-  clock_gettime(CLOCK_MONOTONIC, &now);
+  clock_gettime(clock, &now);
   return static_cast<std::uint64_t>(now.tv_sec) * 1'000'000'000 + static_cast<std::uint64_t>(now.tv_nsec);
 }
+
+std::uint64_t system_now_ns() { return now_by(CLOCK_MONOTONIC); }
 
 void system_sleep_ns(std::uint64_t duration) {
   timespec left = {static_cast<time_t>(duration / 1'000'000'000), static_cast<long>(duration % 1'000'000'000)};
@@ -34,6 +37,8 @@ void system_sleep_ns(std::uint64_t duration) {
 }
 
 }  // namespace
+
+std::uint64_t thread_cpu_ns() { return now_by(CLOCK_THREAD_CPUTIME_ID); }
 
 const Driver kSystemDriver = {system_open, ::close,     system_ioctl,  system_map,     ::munmap,
                               ::read,      system_poll, system_now_ns, system_sleep_ns};

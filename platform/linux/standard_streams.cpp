@@ -49,6 +49,11 @@ void open_standard_streams() {
 
 void survive_closed_pipes() { signal(SIGPIPE, SIG_IGN); }
 
+bool is_output_closed() {
+  pollfd output = {STDOUT_FILENO, POLLOUT, 0};
+  return poll(&output, 1, 0) == 1 && (output.revents & (POLLERR | POLLHUP)) != 0;
+}
+
 bool log_to_file(const char* path, FileError* error) {
   PLATFORM_CHECK(path != nullptr && error != nullptr);
   // Not waiting: whatever reads a pipe would have to be there before anything is shown.

@@ -90,7 +90,10 @@ bool poll(Event* event) {
 
 std::uint64_t now_ns() { return state.clock_ns += state.settings.clock_step_ns; }
 
-void sleep_ns(std::uint64_t duration) { state.clock_ns += duration; }
+void sleep_ns(std::uint64_t duration) {
+  state.clock_ns += duration;
+  if (state.settings.rest_ns) state.settings.rest_ns(duration);
+}
 
 }  // namespace
 

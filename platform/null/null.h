@@ -14,8 +14,9 @@ struct NullSettings {
   std::size_t screen_bytes = 0;
   const Event* script = nullptr;  // in order of time_ns
   int script_count = 0;
-  std::uint64_t clock_step_ns = 1000;   // advance of each now_ns(), so that busy-waiting loops end
-  std::uint64_t frame_ns = 16'666'667;  // advance of each end_frame()
+  std::uint64_t clock_step_ns = 1000;                 // advance of each now_ns(), so that busy-waiting loops end
+  std::uint64_t frame_ns = 16'666'667;                // advance of each end_frame()
+  void (*rest_ns)(std::uint64_t duration) = nullptr;  // lets that much time pass outside too; null: only the clock's
 };
 
 // Takes effect at the next open(). The caller keeps what the pointers refer to.

@@ -13,6 +13,7 @@
 #include "session/compress.h"
 #include "session/environment.h"
 #include "session/heap_scene.h"
+#include "session/interrupt.h"
 #include "session/note.h"
 #include "session/output.h"
 #include "session/radiosity.h"
@@ -93,6 +94,7 @@ Status bake(const BakeOptions& o) {
     RETURN_IF_ERROR(set_environment(o.environment, &scene, &environment));
   if (!environment.file.empty()) heap.files.push_back(environment.file);
   RETURN_IF_ERROR(check_not_read(heap.files, {{"-o", o.output}, {"--json", o.json}}));
+  if (interrupted) return failure("interrupted: nothing is written");
   SolvedRadiosity solved;
   if (o.radiosity) RETURN_IF_ERROR(solve_scene(o.input, std::thread::hardware_concurrency(), &scene, &solved));
   double solve_ms = static_cast<double>(clock_ns() - start) * 1e-6;
@@ -102,6 +104,10 @@ Status bake(const BakeOptions& o) {
   void* accel_block = build_heap_accel(*find_accel(o.accel), scene, &scene.accel);
   if (!accel_block) return failure("not enough memory to build the accelerator: bake a smaller model");
   double build_ms = static_cast<double>(clock_ns() - start) * 1e-6;
+  if (interrupted) {
+    give_block_back(accel_block);
+    return failure("interrupted: nothing is written");
+  }
   DefaultView default_view;
   if (scene.cameras.empty() || !has_light(scene) || scene.info.default_lights != 0) {
     default_view = find_default_view(scene, scene_bounds(scene));
@@ -140,6 +146,12 @@ Status bake(const BakeOptions& o) {
                              {"radiosity_bytes", solved.memory.size()},
                              {"radiosity_ms", o.radiosity ? solve_ms : 0},
                              {"warning", heap.warning}});
+}
+
+int run(const BakeOptions& o) {
+  const Status status = bake(o);
+  const int exit_status = report(status);
+  return status.ok || !interrupted ? exit_status : kExitInterrupted;
 }
 
 }  // namespace
@@ -185,7 +197,7 @@ void add_bake_command(Command program, int* exit_status) {
       .one_of(names)
       .capture_default_str();
   add_json_option(command, &options->json);
-  command.callback([=] { *exit_status = report(bake(*options)); });
+  command.callback([=] { *exit_status = run(*options); });
 }
 
 }  // namespace pocketray

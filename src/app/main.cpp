@@ -1,6 +1,8 @@
 // pocketray: the program. The only place that exits.
 #include <cstdio>
 #include <exception>
+#include <new>
+#include <string>
 
 #include "app/commands.h"
 #include "platform/standard_streams.h"
@@ -99,6 +101,11 @@ int run_command(int argument_count, char** arguments, const Team& team) {
       return parsed.usage ? kExitUsage : kExitInput;
     }
     std::fputs(parsed.help.c_str(), stdout);
+  } catch (const std::bad_alloc&) {
+    print_note(std::string("there is not enough memory for ") + arguments[1] +
+               ": use a smaller model or picture, or raise the limit (ulimit -v)");
+    abort_team(team, kExitInput);
+    return kExitInput;
   } catch (const std::exception& error) {
     print_note(error.what());
     abort_team(team, kExitInput);

@@ -7,6 +7,7 @@
 #include "app/options.h"
 #include "base/seal.h"
 #include "budget/budget.h"
+#include "platform/null/null.h"
 #include "platform/standard_streams.h"
 #include "session/interrupt.h"
 #include "session/output.h"
@@ -197,6 +198,13 @@ Status start_log(const ViewCommand& o) {
   return success();
 }
 
+// The null screen has nobody who could press a button: while it rests, so does the program. Counted frames never rest.
+void let_null_screen_rest(const ViewCommand& o) {
+  platform::NullSettings settings;
+  if (o.view.frame_count == 0) settings.rest_ns = kSystemClock.sleep_ns;
+  platform::null_configure(settings);
+}
+
 int run(ViewCommand o) {
   if (Status logged = start_log(o); !logged.ok) return report(logged);
   o.view.hud = !o.no_hud;
@@ -209,6 +217,7 @@ int run(ViewCommand o) {
   if (!o.common.emulate.empty()) o.view.emulated = device;
   if (status.ok) status = check_options(o);
   if (status.ok) status = picture_size(o.common, &size.width, &size.height);
+  let_null_screen_rest(o);
   if (status.ok)
     status = open_viewer(o.view, o.common.scene.c_str(), static_cast<int>(size.width), static_cast<int>(size.height),
                          &viewer);

@@ -1,6 +1,7 @@
 // The steps of reading a glTF file, in order, and where each mesh goes.
 #include "import/gltf.h"
 
+#include "base/limits.h"
 #include "import/import_error.h"
 
 namespace pocketray {
@@ -50,6 +51,18 @@ void append_placed(GltfFile* file, int index, MeshData mesh, const Transform& in
   append_mesh(file->builder, mesh, node.world * instance, &exactly);
 }
 
+// Refuses instances that exceed a limit before any is built.
+void check_room(const GltfFile& file, const std::vector<MeshData>& meshes, std::uint64_t instance_count) {
+  std::uint64_t vertices = 0, triangles = 0;
+  for (const MeshData& mesh : meshes) vertices += mesh.positions.size(), triangles += mesh.indices.size() / 3;
+  const SceneArrays& out = *file.builder->out;
+  if (vertices > 0 && instance_count > (kVertexCountMax - out.positions.size()) / vertices)
+    fail_import("more than %u vertices; simplify the model", kVertexCountMax);
+  if (triangles > 0 && instance_count > (kTriangleCountMax - out.triangles.size()) / triangles)
+    fail_import("more than %u triangles; simplify the model", kTriangleCountMax);
+  require_bytes(*file.builder, instance_count, vertices * sizeof(Vec3) + triangles * sizeof(Triangle), "the geometry");
+}
+
 void append_node_meshes(GltfFile* file, int index, MeshCache* meshes) {
   const tinygltf::Node& source = file->model.nodes[static_cast<std::size_t>(index)];
   const GltfNode& node = file->nodes[static_cast<std::size_t>(index)];
@@ -59,7 +72,9 @@ void append_node_meshes(GltfFile* file, int index, MeshCache* meshes) {
   const bool has_skin = source.skin >= 0;  // which places the mesh
   if (node.hidden && !has_skin) return;
   if (!has_skin && !node.flat) require_invertible(node.world, gltf_node_name(*file, index));
-  for (const Transform& instance : gltf_instances(file, index)) {
+  const std::vector<Transform> instances = gltf_instances(file, index);
+  check_room(*file, known->second, instances.size());
+  for (const Transform& instance : instances) {
     require_invertible(instance, gltf_node_name(*file, index));
     for (const MeshData& mesh : known->second) append_placed(file, index, mesh, instance);
   }
@@ -83,6 +98,7 @@ void import_gltf(const std::string& path, Bytes bytes, SceneBuilder* builder) {
   file.materials.assign(file.model.materials.size(), kNone);
   file.uv_sets.resize(file.model.materials.size());
   gltf_visit_nodes(&file);
+  gltf_count_geometry(file);
   gltf_recentre(&file);
   gltf_read_animations(&file);
   gltf_mark_movers(&file);

@@ -150,6 +150,9 @@ ClearCoat gltf_read_coat(GltfFile* file, const tinygltf::Material& source);
 // gltf_mesh.cpp: the primitives of a mesh that make triangles.
 std::vector<MeshData> gltf_mesh(GltfFile* file, int mesh);
 
+// gltf_count.cpp: refuses a scene whose geometry, with every instance, is more than fits. Builds nothing.
+void gltf_count_geometry(const GltfFile& file);
+
 // gltf_node.cpp: visits the default scene; fills file->nodes and file->order.
 void gltf_visit_nodes(GltfFile* file);
 // Chooses the scene's origin, and moves the nodes' transforms to it.

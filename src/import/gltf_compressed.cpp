@@ -64,7 +64,7 @@ void decompress_view(GltfFile* file, std::size_t index, const tinygltf::Value& e
     fail_import("a compressed view of mode '%.20s' has elements of %zu bytes; export the file again", mode.c_str(),
                 stride);
   // At least a bit for 256 bytes: no more memory than that is taken for few bytes.
-  if (count > 0 && count * stride / 2048 > size) fail_import("a compressed view is too short; export the file again");
+  if (std::uint64_t(count) * stride / 2048 > size) fail_import("a compressed view is too short; export the file again");
   charge_bytes(file->builder, std::uint64_t(count) * stride, "the compressed geometry");
   std::vector<unsigned char> bytes(count * stride);
   const unsigned char* from = file->model.buffers[buffer].data.data() + offset;

@@ -1,14 +1,30 @@
 #include "import/image.h"
 
 #include <algorithm>
+#include <cstdlib>
 #include <cstring>
 #include <new>
 
+#include "base/arena.h"
 #include "base/color.h"
 #include "base/limits.h"
 #include "import/import_error.h"
 #include "import/webp.h"
 
+// The largest block that the decoder may take, and whether it asked for more: a PNG may inflate to a thousand times its
+// bytes, whatever its size in pixels.
+static thread_local std::size_t block_bytes_max = 0;
+static thread_local bool wants_more = false;
+
+static void* resize_block(void* block, std::size_t byte_count) {
+  if (byte_count <= block_bytes_max) return std::realloc(block, byte_count);
+  wants_more = true;
+  return nullptr;
+}
+
+#define STBI_MALLOC(bytes) resize_block(nullptr, bytes)
+#define STBI_REALLOC(block, bytes) resize_block(block, bytes)
+#define STBI_FREE(block) std::free(block)
 #define STBI_ONLY_PNG
 #define STBI_ONLY_JPEG
 #define STBI_ONLY_TGA
@@ -23,9 +39,22 @@ namespace pocketray {
 
 static_assert(STBI_MAX_DIMENSIONS == kTextureSideMax, "one limit");
 
+// Pixels that a byte can hold at most: deflate codes 1032 bytes in one [RFC 1951], and a byte has eight pixels of a
+// bit.
+constexpr std::uint64_t kBytePixelsMax = 8 * 1032;
+
+// What decoding needs at most at once: the samples as they are inflated, with a byte per row and room for those of
+// interlaced passes, or the pixels padded to the blocks of a JPEG; and of the file, twice what has been read.
+static std::size_t decoder_block_max(std::uint64_t width, std::uint64_t height, bool is_16_bit,
+                                     std::size_t file_bytes) {
+  const std::uint64_t padded = (width + 64) * (height + 64), samples = 4 * (is_16_bit ? 2 : 1) * padded;
+  return to_size(std::max<std::uint64_t>(2 * samples, 2 * std::uint64_t(file_bytes) + 4096));
+}
+
 static Image decode(const Bytes& bytes, const std::string& name, std::uint64_t texel_count_max) {
   if (is_webp(bytes)) return decode_webp(bytes, name, texel_count_max);
   int width = 0, height = 0, channels = 0, size = static_cast<int>(bytes.size());
+  block_bytes_max = 1u << 20;  // for headers
   if (bytes.size() > 1u << 30 || !stbi_info_from_memory(bytes.data(), size, &width, &height, &channels))
     fail_import("%s is not a PNG, JPEG, TGA or BMP image; convert it", name.c_str());
   if (width < 1 || height < 1 || width > STBI_MAX_DIMENSIONS || height > STBI_MAX_DIMENSIONS)
@@ -33,7 +62,17 @@ static Image decode(const Bytes& bytes, const std::string& name, std::uint64_t t
                 STBI_MAX_DIMENSIONS);
   std::uint64_t texel_count = static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height);
   if (texel_count > texel_count_max) fail_import("%s is too large; scale it down", name.c_str());
+  if (texel_count > kBytePixelsMax * bytes.size())
+    fail_import("%s has %d × %d pixels, more than its %zu bytes can hold; copy it again", name.c_str(), width, height,
+                bytes.size());
+  const bool is_16_bit = stbi_is_16_bit_from_memory(bytes.data(), size) != 0;
+  block_bytes_max =
+      decoder_block_max(static_cast<std::uint64_t>(width), static_cast<std::uint64_t>(height), is_16_bit, bytes.size());
+  wants_more = false;
   stbi_uc* pixels = stbi_load_from_memory(bytes.data(), size, &width, &height, &channels, 4);
+  if (!pixels && wants_more)
+    fail_import("%s has %d × %d pixels, but holds more data than these need; export it again", name.c_str(), width,
+                height);
   if (!pixels) fail_import("%s cannot be decoded (%s); export it again", name.c_str(), stbi_failure_reason());
   Image image;
   image.width = static_cast<std::uint32_t>(width), image.height = static_cast<std::uint32_t>(height);

@@ -28,7 +28,7 @@ class Reader {
     if (key.is("g") || key.is("o")) return begin_shape(line->rest());
     if (key.is("usemtl")) return use_material(line->rest());
     if (key.is("s")) return begin_group(line);
-    if (key.is("mtllib")) return file_.material_files.push_back(line->rest());
+    if (key.is("mtllib")) return name_file(line->rest());
     if (key.is("l")) file_.has_lines = true;
     if (key.is("p")) file_.has_points = true;
     if (!key.is("l") && !key.is("p")) name_unknown(key.text());
@@ -121,6 +121,12 @@ class Reader {
     end();
     if (!file_.shapes.empty() && file_.shapes.back().face_begin == file_.faces.size()) file_.shapes.pop_back();
     file_.shapes.push_back({name, file_.faces.size(), file_.faces.size()});
+  }
+
+  void name_file(const std::string& name) {
+    constexpr std::size_t kFilesMax = 64;  // chosen: each is looked for in several places
+    std::vector<std::string>& all = file_.material_files;
+    if (all.size() < kFilesMax && std::find(all.begin(), all.end(), name) == all.end()) all.push_back(name);
   }
 
   void use_material(const std::string& name) {

@@ -1,4 +1,4 @@
-// Forms of OBJ and MTL text that the parsing library does not know.
+// Forms of OBJ and MTL text that are rewritten before they are read.
 #pragma once
 #include "import/files.h"
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <numeric>
 
 #include "base/check.h"
 #include "scene/scene.h"
@@ -155,14 +156,24 @@ void PlanarSweep::end_pass() {
     edge.high = split.point;
     add_edge(split.point, high, corner);
   }
-  // Without this, edges between such points may be split at one and at the other in turn, for ever.
+  unite_equal_points();
+}
+
+// Without this, edges between such points may be split at one and at the other in turn, for ever.
+void PlanarSweep::unite_equal_points() {
+  if (equal_.empty()) return;
+  std::vector<std::uint32_t> stands_for(points_.size());
+  std::iota(stands_for.begin(), stands_for.end(), 0u);
+  auto resolved = [&](std::uint32_t point) {
+    while (stands_for[point] != point) point = stands_for[point] = stands_for[stands_for[point]];
+    return point;
+  };
   for (const auto& pair : equal_) {
-    for (Edge& edge : edges_) {
-      if (edge.low == pair.first) edge.low = pair.second;
-      if (edge.high == pair.first) edge.high = pair.second;
-    }
-    std::replace(points_of_corners_.begin(), points_of_corners_.end(), pair.first, pair.second);
+    const std::uint32_t a = resolved(pair.first), b = resolved(pair.second);
+    stands_for[std::max(a, b)] = std::min(a, b);
   }
+  for (Edge& edge : edges_) edge.low = resolved(edge.low), edge.high = resolved(edge.high);
+  for (std::uint32_t& point : points_of_corners_) point = resolved(point);
 }
 
 // Ends the edges that arrive; splits those that pass through the point.
@@ -264,7 +275,7 @@ void PlanarSweep::note_equal(const Edge& edge, std::uint32_t point) {
     const Vec2& q = points_[end];
     if (std::fabs(static_cast<double>(p.x) - static_cast<double>(q.x)) <= two_roundings(p.x, q.x) &&
         std::fabs(static_cast<double>(p.y) - static_cast<double>(q.y)) <= two_roundings(p.y, q.y))
-      equal_.push_back({std::max(point, end), std::min(point, end)});
+      equal_.push_back({point, end});
   }
 }
 
@@ -361,23 +372,11 @@ PlanarSweep::Chain PlanarSweep::take_above_recent(Chain* chain) {
   return upper;
 }
 
-// A fan about the point, except for the chain's corners that lie on the two edges ending there: these are connected
-// with a corner on the other side.
+// A fan about the point, which sees all of the chain: a concave chain with sides on both edges that end here.
 void PlanarSweep::close(const Chain& chain, std::uint32_t point) {
-  run_.clear();
-  for (std::uint32_t node = chain.low; node != kNone; node = nodes_[node].above) run_.push_back(nodes_[node].point);
-  const std::size_t end = run_.size() - 1;
-  auto sees = [&](std::size_t i) { return orientation(points_[run_[i]], points_[point], points_[run_[i + 1]]) > 0; };
-  std::size_t low = 0, high = end;
-  while (low < end && !sees(low)) ++low;
-  while (high > low && !sees(high - 1)) --high;
-  for (std::size_t i = low; i < high; ++i) {
-    std::uint32_t base = run_[i];
-    for (std::size_t k = low; i == low && k > 0; --k) emit(run_[k], base = run_[k - 1], run_[i + 1]);
-    std::uint32_t top = run_[i + 1];
-    for (std::size_t k = high; i + 1 == high && k < end; ++k) emit(base, run_[k + 1], top), top = run_[k + 1];
-    emit(base, point, top);
-  }
+  std::uint32_t node = chain.low;
+  for (std::uint32_t above; (above = nodes_[node].above) != kNone; node = above)
+    emit(nodes_[node].point, point, nodes_[above].point);
 }
 
 }  // namespace pocketray

@@ -81,6 +81,7 @@ class PlanarSweep {
   bool pass();
   void begin_pass();
   void end_pass();
+  void unite_equal_points();
   void visit(std::uint32_t point);
   void take_arriving(std::uint32_t point, Status::iterator first, Status::iterator last);
   void take_leaving(std::uint32_t point);
@@ -107,7 +108,6 @@ class PlanarSweep {
   std::vector<Node> nodes_;
   std::vector<Split> splits_;                      // for the next pass
   std::vector<std::uint32_t> arriving_, leaving_;  // edges at the point visited, from below
-  std::vector<std::uint32_t> run_;                 // the chain being closed
   Status status_{Below{this}};
   std::vector<std::pair<std::uint32_t, std::uint32_t>> equal_;  // points that the next pass takes for one
   std::size_t edge_count_max_ = 0;

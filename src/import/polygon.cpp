@@ -77,7 +77,7 @@ double direction(const Vec2& from, double u, double v) {
   return std::atan2(v - static_cast<double>(from.y), u - static_cast<double>(from.x));
 }
 double turn(double from, double to) {
-  const double angle = to - from;
+  const double angle = std::fmod(to - from, 2 * kPi);
   return angle < 0 ? angle + 2 * kPi : angle;
 }
 
@@ -86,7 +86,11 @@ double turn(double from, double to) {
 class CornersAtPoints {
  public:
   CornersAtPoints(const std::vector<Vec2>& loop, const PlanarSweep& sweep)
-      : loop_(loop), sweep_(sweep), first_(sweep.points().size(), kNone), next_(loop.size(), kNone) {
+      : loop_(loop),
+        sweep_(sweep),
+        steps_left_(64 * loop.size() + 1000),
+        first_(sweep.points().size(), kNone),
+        next_(loop.size(), kNone) {
     for (std::size_t i = loop.size(); i-- > 0;) {
       std::uint32_t& first = first_[sweep.points_of_corners()[i]];
       next_[i] = first;
@@ -108,7 +112,7 @@ class CornersAtPoints {
     const double from = direction(here, static_cast<double>(a.x), static_cast<double>(a.y));
     const double to = direction(here, static_cast<double>(b.x), static_cast<double>(b.y));
     const double middle = from + turn(from, to) / 2;
-    for (std::uint32_t corner = first; corner != kNone; corner = next_[corner])
+    for (std::uint32_t corner = first; corner != kNone && steps_left_ > 0; corner = next_[corner])
       if (holds(corner, middle)) return corner;
     return first;
   }
@@ -122,14 +126,16 @@ class CornersAtPoints {
       const std::size_t step = side == 0 ? 1 : loop_.size() - 1;
       std::size_t other = corner;
       do other = (other + step) % loop_.size();
-      while (other != corner && sweep_.points_of_corners()[other] == sweep_.points_of_corners()[corner]);
+      while (steps_left_ > 0 && --steps_left_ > 0 && other != corner &&
+             sweep_.points_of_corners()[other] == sweep_.points_of_corners()[corner]);
       ends[side] = direction(here, static_cast<double>(loop_[other].x), static_cast<double>(loop_[other].y));
     }
-    return turn(ends[0], middle + (middle < ends[0] ? 2 * kPi : 0)) < turn(ends[0], ends[1]);
+    return turn(ends[0], middle) < turn(ends[0], ends[1]);
   }
 
   const std::vector<Vec2>& loop_;
   const PlanarSweep& sweep_;
+  mutable std::size_t steps_left_;           // then the first corner at a point has to do
   std::vector<std::uint32_t> first_, next_;  // by point; by corner
 };
 
@@ -187,6 +193,10 @@ bool triangulate_polygon(const std::vector<Vec3>& positions, PolygonTriangles* r
   const std::vector<std::uint32_t>& triangles = sweep.triangles();
   for (std::size_t t = 0; t < triangles.size(); t += 3)
     for (int k = 0; k < 3; ++k) result->corners.push_back(corners.find(&triangles[t], k));
+  // A corner at the place of the next has a triangle without area, so that a polygon of n corners has n − 2.
+  for (std::uint32_t i = 0; i < count && !triangles.empty(); ++i)
+    if (sweep.points_of_corners()[i] == sweep.points_of_corners()[(i + 1) % count])
+      result->corners.insert(result->corners.end(), {i, (i + 1) % count, (i + 2) % count});
   for (const PlanarSweep::Crossing& crossing : sweep.crossings()) {
     PolygonCrossing made = {{crossing.edges[0], crossing.edges[1]}, {0, 0}};
     for (int i = 0; i < 2; ++i) made.along[i] = along_edge(loop, made.edges[i], sweep.points()[crossing.point]);

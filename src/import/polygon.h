@@ -19,7 +19,8 @@ struct PolygonTriangles {
 };
 
 // Triangulates a polygon by the even-odd rule, seen along its mean normal: concave ones, with keyholes, with corners on
-// a line or at one place. All corners on the boundary are corners of triangles, so that neighbours leave no gap. A
+// a line or at one place. All corners on the boundary are corners of triangles, so that neighbours leave no gap; one that repeats the last has a triangle
+// without area. A
 // polygon without area has no triangles. False if it crosses itself more often than 64 times its number of corners.
 bool triangulate_polygon(const std::vector<Vec3>& positions, PolygonTriangles* result);
 

@@ -196,7 +196,9 @@ static std::string warning_line(const SceneBuilder& builder) {
   for (const std::string& item : builder.unused) line += (line.empty() ? "not used: " : ", ") + item;
   if (builder.broken_face_count > 0)
     line += (line.empty() ? "" : "; ") + std::to_string(builder.broken_face_count) +
-            " faces have vertices that are not finite or too far away and are left out (--strict refuses them)";
+            (builder.broken_face_count == 1 ? " face is left out, as a vertex is"
+                                            : " faces are left out, as vertices are") +
+            " not finite or beyond 1e18 (--strict names the first)";
   for (const std::string& item : builder.remarks) line += (line.empty() ? "" : "; ") + item;
   return line;
 }

@@ -5,7 +5,7 @@
 namespace pocketray {
 
 constexpr int kPatchSamples = 4, kLightSamples = 64;
-constexpr double kAlbedoMax = 0.99;
+constexpr double kAlbedoMax = 0.998;
 
 struct PatchSample {
   Vec3d point, normal;  // unit

@@ -5,6 +5,7 @@
 
 #include "base/check.h"
 #include "radiosity/corners.h"
+#include "radiosity/cuts.h"
 
 namespace pocketray {
 namespace {
@@ -14,6 +15,9 @@ constexpr double kLift = 1e-3;   // of a cell
 // Longest edge of a triangle with values at its corners, in distances of nodes. Measured: on `seesaw`, ꟻLIP is .1148
 // for 1 and 1.10 MiB, .1154 for 2 and .76 MiB, .1162 for 3 and .67 MiB.
 constexpr double kEdge = 2;
+
+// Grids are finer where something stands on them: next to it, a node's distance is lost (barriers.h). Chosen.
+constexpr double kFiner = 3;
 
 // The nearest point of a triangle [Ericson 2005, sec. 5.1.5], by clamping barycentric coordinates edge by edge.
 Vec3d nearest_on_segment(const Vec3d& p, const Vec3d& a, const Vec3d& b) {
@@ -46,8 +50,19 @@ Vec3d onto_surface(const Scene& scene, const FlatSurface& flat, const Vec3d& poi
   return best;
 }
 
-void place_grid(const Scene& scene, const FlatSurface& flat, double spacing, bool back, Places* places,
-                RadiositySolution* solution) {
+// A node on the foot of a barrier is moved to one side of it.
+Vec3d beside_barriers(const FlatSurface& flat, const std::vector<CutEdge>& barriers, double cell, Vec3d node) {
+  for (const CutEdge& edge : barriers) {
+    const Vec3d way = edge.b - edge.a, across = normalize(cross(flat.normal, way));
+    const double along = dot(node - edge.a, way) / dot(way, way), off = dot(node - edge.a, across);
+    if (along > -kInset && along < 1 + kInset && std::fabs(off) < 0.5 * kInset * cell)
+      node += across * (kInset * cell - off);
+  }
+  return node;
+}
+
+void place_grid(const Scene& scene, const FlatSurface& flat, double spacing, bool back,
+                const std::vector<CutEdge>& barriers, Places* places, RadiositySolution* solution) {
   auto count_of = [&](double size) {
     return std::min<std::uint32_t>(kRadiositySideMax,
                                    1 + std::max(1u, static_cast<std::uint32_t>(size / spacing + 0.75)));
@@ -65,8 +80,9 @@ void place_grid(const Scene& scene, const FlatSurface& flat, double spacing, boo
       auto inset = [](std::uint32_t i, std::uint32_t count) {
         return i == 0 ? kInset : i == count - 1 ? i - kInset : static_cast<double>(i);
       };
-      const Vec3d wanted =
-          flat.origin + flat.s * (inset(column, columns) * step_s) + flat.t * (inset(row, rows) * step_t);
+      const Vec3d wanted = beside_barriers(
+          flat, barriers, std::min(step_s, step_t),
+          flat.origin + flat.s * (inset(column, columns) * step_s) + flat.t * (inset(row, rows) * step_t));
       Vec3d on = onto_surface(scene, flat, wanted);
       if (on != wanted) {  // a little beyond the border, inside
         const Vec3d inward = on - wanted;
@@ -95,6 +111,7 @@ Places place_receivers(const Scene& scene, const Surfaces& surfaces, const Radio
   const bool any_back = std::find(back_sees.begin(), back_sees.end(), 1) != back_sees.end();
   solution->triangles.assign(std::size_t(scene.triangles.count) * (any_back ? 2 : 1), kNone);
   const double spacing = surfaces.patch_side / options.nodes_per_patch;
+  const std::vector<CutEdge> edges = find_cut_edges(scene, surfaces);
   Places places;
   for (int side = 0; side <= (any_back ? 1 : 0); ++side) {
     const std::vector<char>& sees = side ? back_sees : front_sees;
@@ -105,7 +122,11 @@ Places place_receivers(const Scene& scene, const Surfaces& surfaces, const Radio
       if (!reflects(m)) continue;
       bool any = false;
       for (std::uint32_t t : flat.triangles) any |= sees[t] != 0;
-      if (any) place_grid(scene, flat, spacing, side != 0, &places, solution);
+      if (!any) continue;
+      std::vector<CutEdge> barriers;
+      for (const CutEdge& edge : edges)
+        if (is_barrier(flat, edge, surfaces.patch_side)) barriers.push_back(edge);
+      place_grid(scene, flat, barriers.empty() ? spacing : spacing / kFiner, side != 0, barriers, &places, solution);
     }
   }
   return places;

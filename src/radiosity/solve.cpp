@@ -6,6 +6,7 @@
 
 #include "base/check.h"
 #include "base/fmath.h"
+#include "radiosity/barriers.h"
 #include "radiosity/corners.h"
 #include "radiosity/refine.h"
 #include "radiosity/tangents.h"
@@ -17,6 +18,8 @@ constexpr std::uint32_t kNodeRays = 64;
 constexpr std::uint32_t kRefined = 4;  // largest ratio of numbers of patches by refinement
 constexpr double kBackSees = 0.05;     // share of fronts around a back that is worth light of its own
 constexpr double kCovered = 0.9;       // share of back faces around a node that lies inside a body
+constexpr double kBesideBacks =
+    0.5;                       // share of back faces from which on a node may lie inside, and sees none through them
 constexpr double kSeen = 0.1;  // share of patches in what closes a node's surroundings, below which it lies inside, too
 
 Outlook look_around_patch(const SceneRays& rays, const Patch& patch, std::uint32_t seed) {
@@ -62,16 +65,17 @@ struct PatchLight {
 
 // What arrives at a receiver of a material from all patches and from outside, as irradiance / π. Negative x: it lies
 // inside a body.
-Vec3d gather(const SceneRays& rays, const PatchLight& light, const Receiver& at, std::uint32_t material,
+Vec3d gather(const SceneRays& rays, const PatchLight& light, const Receiver& at, std::uint32_t material, bool on_grid,
              std::uint32_t seed) {
   const Outlook outlook = look_around(rays, at, kNodeRays, seed);
   if (outlook.back > kCovered) return {-1, 0, 0};
+  const bool through_backs = on_grid && outlook.back < kBesideBacks;
   Vec3d sum = {0, 0, 0};
   double seen = 0;
   for (const Patch& patch : light.patches) {
     const double factor = patch_form_factor(at.point, at.normal, patch);
     if (!(factor > 0)) continue;
-    const double share = factor * visible_share(rays, at, patch, factor, seed, true);
+    const double share = factor * visible_share(rays, at, patch, factor, seed, through_backs);
     const std::size_t i = static_cast<std::size_t>(&patch - light.patches.data());
     sum += (patch.material == material ? light.all : light.reflected)[i] * share, seen += share;
   }
@@ -156,6 +160,7 @@ Status solve_radiosity(const FrameData& frame, const RadiosityOptions& options, 
     first[i] = (shines ? patches[i].emission : Vec3d{0, 0, 0}) +
                patches[i].albedo * (irradiance * (1 / kPi) + to_double(scene.info.background) * looks[i].open);
   });
+  solution->patch_count = static_cast<std::uint32_t>(patches.size());
   constexpr double kFactorsShare = 0.3;
   const FormFactors factors = find_form_factors(rays, patches, closed, options.threads,
                                                 [&](double share) { return progress(kFactorsShare * share); });
@@ -163,7 +168,7 @@ Status solve_radiosity(const FrameData& frame, const RadiosityOptions& options, 
   Exchange exchange = start_exchange(area, albedo, first);
   if (!(exchange.emitted > 0)) return failure("no light reaches a surface: there is none to solve for");
   settle(factors, options.converged, 100 * factors.count, &exchange);
-  solution->patch_count = factors.count, solution->shots = exchange.shots;
+  solution->shots = exchange.shots;
   solution->unshot = unshot_magnitude(exchange) / exchange.emitted;
   PatchLight light_of = {patches, exchange.radiance, exchange.radiance};
   for (std::size_t i = 0; i < patches.size() && !options.stores_direct_light; ++i)
@@ -185,7 +190,7 @@ Status solve_radiosity(const FrameData& frame, const RadiosityOptions& options, 
     if (stop) return;
     const Receiver& at = i < node_count ? places.nodes[i].at : places.values[i - node_count].at;
     const std::uint32_t material = i < node_count ? places.nodes[i].material : places.values[i - node_count].material;
-    Vec3d light = gather(rays, light_of, at, material, i);
+    Vec3d light = gather(rays, light_of, at, material, i < node_count, i);
     const bool covered = light.x < 0;
     if (options.stores_direct_light && !covered) light += light_irradiance(rays, at) * (1 / kPi);
     if (i < node_count) {
@@ -198,6 +203,7 @@ Status solve_radiosity(const FrameData& frame, const RadiosityOptions& options, 
     if (!progress(kFactorsShare + (1 - kFactorsShare) * ++done / count)) stop = true;
   });
   if (stop) return failure("interrupted");
+  keep_behind_barriers(rays, places.nodes, known, solution);
   for (const RadiosityGrid& grid : solution->grids) {
     RadiosityNode* nodes = &solution->nodes[grid.node_begin];
     const auto begin = known.begin() + grid.node_begin;

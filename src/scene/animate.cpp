@@ -225,6 +225,10 @@ void place_lights_and_cameras(const Scene& scene, Pose* pose) {
       camera.eye = hold(transform_point(world, camera.eye));
       camera.target = hold(transform_point(world, camera.target));
       camera.up = hold(transform_vector(world, camera.up));
+      if (is_zero(cross(camera.target - camera.eye, camera.up))) {  // below a node without volume: not turned
+        const Camera& own = pose->cameras[i];
+        camera.target = hold(camera.eye + (own.target - own.eye)), camera.up = own.up;
+      }
       camera.node = kNone;
     }
     pose->cameras[i] = camera;

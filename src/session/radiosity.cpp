@@ -2,6 +2,8 @@
 
 #include <atomic>
 #include <cstring>
+#include <new>
+#include <system_error>
 
 #include "base/check.h"
 #include "effect/setting_list.h"
@@ -55,8 +57,10 @@ Status prepare(const Scene& scene, Renderer* renderer, Block* block) {
 
 }  // namespace
 
-Status solve_scene(const std::string& name, std::uint32_t threads, Scene* scene, SolvedRadiosity* solved) {
-  CHECK(scene != nullptr && solved != nullptr);
+namespace {
+
+Status solve(const std::string& name, std::uint32_t threads, Scene* scene, RadiositySolution* solution,
+             SolvedRadiosity* solved) {
   if (!has_light(*scene) || scene->info.default_lights != 0)
     return failure("%.300s has no light of its own to solve radiosity for: add one to the model", name.c_str());
   Block block;
@@ -67,7 +71,6 @@ Status solve_scene(const std::string& name, std::uint32_t threads, Scene* scene,
   constexpr std::uint64_t kSteps = 1000;  // chosen: finer than the percent shown
   Progress progress = start_progress("solving radiosity", kSteps);
   std::atomic<bool> showing{false};
-  RadiositySolution solution;
   Status status = solve_radiosity(
       renderer.frame, options,
       [&](double share) {
@@ -77,12 +80,12 @@ Status solve_scene(const std::string& name, std::uint32_t threads, Scene* scene,
         }
         return !interrupted;
       },
-      &solution);
+      solution);
   end_progress(&progress);
   if (!status.ok) return failure("%.300s: %s", name.c_str(), status.message);
   std::size_t bytes = 0;
   auto place = [&](auto& array) { bytes += arena_need(array.bytes()); };
-  solution.view(scene);
+  solution->view(scene);
   visit_radiosity(scene, place);
   solved->memory.resize(bytes + kArenaAlignment);
   Arena arena = make_arena("radiosity", solved->memory.data(), solved->memory.size());
@@ -93,10 +96,27 @@ Status solve_scene(const std::string& name, std::uint32_t threads, Scene* scene,
     array.data = static_cast<decltype(array.data)>(copy);
   });
   char text[128];
-  std::snprintf(text, sizeof text, "%u patches, %u shots, %.2g %% of the light unshot", solution.patch_count,
-                solution.shots, 100 * solution.unshot);
+  std::snprintf(text, sizeof text, "%u patches, %u shots, %.2g %% of the light unshot", solution->patch_count,
+                solution->shots, 100 * solution->unshot);
   solved->summary = text;
   return success();
+}
+
+}  // namespace
+
+Status solve_scene(const std::string& name, std::uint32_t threads, Scene* scene, SolvedRadiosity* solved) {
+  CHECK(scene != nullptr && solved != nullptr);
+  RadiositySolution solution;
+  try {
+    return solve(name, threads, scene, &solution, solved);
+  } catch (const std::bad_alloc&) {
+    const double patches = solution.patch_count;
+    if (patches == 0) return failure("%.300s: not enough memory to divide its surfaces for radiosity", name.c_str());
+    return failure("%.300s: not enough memory for radiosity: the form factors of %.0f patches take %.0f MiB",
+                   name.c_str(), patches, 4 * patches * patches / (1 << 20));
+  } catch (const std::system_error&) {
+    return failure("%.300s: not enough memory for the %u threads that solve radiosity", name.c_str(), threads);
+  }
 }
 #else
 Status solve_scene(const std::string& name, std::uint32_t, Scene*, SolvedRadiosity*) {

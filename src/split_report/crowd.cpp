@@ -116,7 +116,7 @@ double price_for(const ServerState& server, const Account& account) {
 int choose_place(Simulation* s, ServerState* server) {
   const std::uint64_t passed = s->now - server->settled_ns, count = 1 + server->places.size();
   server->settled_ns = s->now;
-  int first[2] = {-1, -1};
+  Choice choice;
   clear_demand(&server->lanes);
   for (std::size_t i = 0; i < server->places.size(); ++i) {
     Place* place = &server->places[i];
@@ -124,12 +124,9 @@ int choose_place(Simulation* s, ServerState* server) {
     observe_demand(&place->account, passed);
     note(&server->lanes, &place->account, has_work(*place));
     add_demand(&server->lanes, place->account);
-    int* best = &first[place->account.heavy];
-    if (has_work(*place) &&
-        (*best < 0 || goes_before(place->account, server->places[static_cast<std::size_t>(*best)].account)))
-      *best = static_cast<int>(i);
+    consider(&choice, static_cast<int>(i), place->account);
   }
-  return first[choose_lane(&server->lanes, first[0] >= 0, first[1] >= 0)];
+  return choose(&server->lanes, choice);
 }
 
 void begin_slice(Simulation* s, std::uint32_t index) {
@@ -223,6 +220,7 @@ void tend_connections(Simulation* s, std::uint32_t index) {
       connection->open = model->connected = true;
       connection->place = server->places.size();
       server->places.push_back({index, i, Account(), 0, 0, 0, 0});
+      server->places.back().account.seat = connection->place;
       observe_price(&client->model, i, price_for(*server, Account()));
       const PixelTimes times = {c.pixel_ns, s->crowd->servers[c.servers[i]].pixel_ns,
                                 s->crowd->pixel_bytes * c.ns_per_byte};

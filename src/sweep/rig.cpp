@@ -77,9 +77,10 @@ Status open_with(const AccuracyOptions& options, const CommonOptions& common, st
   hooks.loaded = [&](const SceneSource& source, Renderer* renderer) {
     rig->baseline.settings = renderer->settings;
     rig->scene_hash = hash_of(source, renderer->scene);
+    if (renderer->animation != 0) rig->scene_hash += ", animation " + common.animation;
     ContentHash identity;
-    const bool has_own_look =
-        common.background.empty() && common.environment.empty() && common.light == CommonOptions().light;
+    const bool has_own_look = common.background.empty() && common.environment.empty() &&
+                              common.light == CommonOptions().light && renderer->animation == 0;
     if (has_own_look && identify_scene(source, renderer, &identity).ok)
       rig->front_path = front_path(common.scene, identity);
     renderer->settings = dearest(renderer->scene, renderer->settings);

@@ -49,4 +49,31 @@ check size_limit_is_told grep -q 'could not be written completely' told
 signalled HUP render seesaw --size 640x480 --frames 0:350 -o long.gif
 check nothing_is_left test -z "$(find . -name '*.part')" -a ! -e large.ppm
 
+# Goal: a reader that leaves, or SIGPIPE by itself, costs no file that is finished and leaves nothing behind, whatever the
+# command. Method: commands whose output nobody reads; the signal in a long sequence, of which the finished frames stay.
+leaves() {  # name words...
+  "${run[@]}" "${@:2}" 2>told | true
+  local got=${PIPESTATUS[0]}
+  check "reader_leaves_$1" test "$got" -eq 0 -o "$got" -eq 3  # as it had nothing more to tell, or was interrupted
+}
+leaves picture render cube "${tiny[@]}" -o left.png
+leaves animation render seesaw "${tiny[@]}" --frames 0:9 -o left.gif
+leaves bake bake cube -o left.pray
+leaves plan plan cube
+leaves bench bench cube --frames 1 "${tiny[@]}"
+for file in left.png left.gif left.pray; do check "file_is_complete_$file" test -s $file; done
+signalled PIPE render seesaw --size 640x480 --frames 0:350 -o long.gif
+check nothing_is_left_by_sigpipe test -z "$(find . -name '*.part')"
+[ $# -gt 0 ] || check frames_are_kept_after_sigpipe test -s long.gif
+
+# Goal: a view at rest sleeps. Method: the CPU time of one on the null screen that is ended after three seconds.
+if [ $# -eq 0 ]; then
+  before=$(cut -d' ' -f16,17 /proc/$$/stat)
+  signalled INT view cube "${tiny[@]}" --screen null
+  after=$(cut -d' ' -f16,17 /proc/$$/stat)
+  spent=$(awk -v a="$before" -v b="$after" -v hz="$(getconf CLK_TCK)" \
+    'BEGIN { split(a, x); split(b, y); print int(1000 * (y[1] + y[2] - x[1] - x[2]) / hz) }')
+  check "view_at_rest_sleeps (${spent} ms)" test "$spent" -lt 1200
+fi
+
 finish

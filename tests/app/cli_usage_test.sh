@@ -58,7 +58,8 @@ mkdir folder.pray
 expect folder_as_scene 1 "regular file" render folder.pray -o b.ppm
 if "${run[@]}" render --help | grep -q glTF; then
   printf 'v 0 0 0\nv nan 0 0\nv 0 1 0\nf 1 2 3\n' >nan.obj
-  expect number_that_is_none 1 "nan.obj: line 2: 'nan' .*export" render nan.obj -o b.ppm
+  expect number_that_is_none 1 "nan.obj: line 2: 'nan' .*export" render nan.obj --strict -o b.ppm
+  expect no_face_left 1 "nan.obj: no triangles .*1 face is left out.*--strict" render nan.obj -o b.ppm
 fi
 check nothing_was_written test ! -e b.ppm
 

@@ -96,6 +96,30 @@ TEST_CASE("hard_70_a_scale_animated_through_0_hides_then") {
   }
 }
 
+// Goal: HARDCASES row 70: a camera and a light below a node of scale 0 stay sound. Method: a scale animated from 0.
+TEST_CASE("hard_70_cameras_and_lights_outlive_a_scale_of_0") {
+  count_assertions("finite everywhere");
+  TemporaryFolder folder;
+  ImportedScene imported = load_nodes(
+      folder, triangle_with_keys({0, 0, 0, 1, 1, 1, 0, 0, 0}),
+      "{\"mesh\":0,\"children\":[1],\"translation\":[4,5,6]},{\"camera\":0,\"extensions\":{\"KHR_lights_punctual\":{"
+      "\"light\":0}}},{\"mesh\":0}",
+      "0,2",
+      ",\"cameras\":[{\"type\":\"perspective\",\"perspective\":{\"yfov\":0.5,\"znear\":0.1}}],\"extensions\":{"
+      "\"KHR_lights_punctual\":{\"lights\":[{\"type\":\"directional\",\"intensity\":8}]}},\"animations\":[{"
+      "\"samplers\":[{"
+      "\"input\":1,\"output\":2}],\"channels\":[{\"sampler\":0,\"target\":{\"node\":0,\"path\":\"scale\"}}]}]");
+  Posed posed(imported.scene);
+  for (double time : {0.0, 0.5, 1.0}) {
+    pose_at(imported.scene, 0, time, &posed.pose);
+    const Camera& camera = posed.pose.cameras[0];
+    CHECK(camera.eye == Vec3{4, 5, 6});
+    CHECK(normalize(camera.target - camera.eye) == Vec3{0, 0, -1});
+    CHECK(!is_zero(cross(camera.target - camera.eye, camera.up)));
+    CHECK(posed.pose.lights[0].direction == Vec3{0, 0, -1});
+  }
+}
+
 // Goal: HARDCASES row 70: a joint of scale 0 hides what follows it alone; normals stay finite. Method: a skinned
 // triangle whose joint is scaled.
 TEST_CASE("hard_70_a_joint_of_scale_0_hides_what_follows_it") {

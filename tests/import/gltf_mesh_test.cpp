@@ -157,6 +157,25 @@ TEST_CASE("hard_08_denormal_vertices_are_taken_and_indices_out_of_range_refused"
   CHECK(contains(error_of(beyond.gltf(mesh_document("{\"attributes\":{\"POSITION\":0},\"indices\":1}"))), "index 7"));
 }
 
+// Goal: instances that exceed a limit are refused before any is built. Method: five thousand of ten triangles for a
+// megabyte.
+TEST_CASE("gltf_instances_are_counted_before_they_are_built") {
+  GltfWriter w;
+  std::vector<float> corners;
+  for (int i = 0; i < 90; ++i) corners.push_back(static_cast<float>(i * i % 7));
+  w.vec3s(corners);
+  w.accessors += ",{\"count\":5000,\"type\":\"VEC3\",\"componentType\":5126}";
+  TemporaryFolder folder;
+  ImportOptions options;
+  options.byte_count_max = 1 << 20;
+  const std::string error =
+      load_error(folder.write("a.gltf", w.gltf(mesh_document("{\"attributes\":{\"POSITION\":0}}",
+                                                             "{\"mesh\":0,\"extensions\":{\"EXT_mesh_gpu_instancing\":{"
+                                                             "\"attributes\":{\"TRANSLATION\":1}}}}"))),
+                 options);
+  CHECK_MESSAGE(contains(error, "MiB"), error);
+}
+
 // Goal: EXT_mesh_gpu_instancing places the mesh once for each instance, under the node's own transform.
 TEST_CASE("gltf_instances_are_placed_under_their_node") {
   GltfWriter w;

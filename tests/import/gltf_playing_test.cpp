@@ -7,6 +7,7 @@
 #include "import/gltf_writer.h"
 #include "import/import_testing.h"
 #include "import/posed.h"
+#include "support/hard_case.h"
 
 using namespace pocketray;
 
@@ -95,6 +96,7 @@ TEST_CASE("gltf_animations_that_do_not_collide_play_together") {
 // Goal: HARDCASES row 67: of keys at equal times the last counts; keys an ulp apart are finite; descending ones are
 // refused with a line. Method: positions at and around the keys.
 TEST_CASE("hard_67_of_keys_at_equal_times_the_last_counts") {
+  count_assertions("position at and around the key");
   TemporaryFolder folder;
   ImportedScene equal = keyed(folder, {0, 1, 1, 1, 2});
   CHECK(contains(equal.warning, "equal times"));

@@ -148,6 +148,20 @@ TEST_CASE("import_byte_count_max_bounds_file_and_scene") {
   CHECK(contains(error_of("a.glb", w.glb(instanced), options), "beyond 1 MiB"));
 }
 
+// Goal: instances are counted before any is built. Method: 30,000 of a mesh of 30,000 vertices, which are too many for
+// any limit of bytes; if they were built, that limit would end it first.
+TEST_CASE("import_counts_instances_before_it_builds_them") {
+  GltfWriter w;
+  w.vec3s(std::vector<float>(3 * 30000, 0.0f));
+  w.vec3s(std::vector<float>(3 * 30000, 0.0f));
+  ImportOptions options;
+  options.byte_count_max = 16 << 20;
+  const std::string instanced =
+      "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0}}]}],\"nodes\":[{\"mesh\":0,\"extensions\":{"
+      "\"EXT_mesh_gpu_instancing\":{\"attributes\":{\"TRANSLATION\":1}}}}],\"scenes\":[{\"nodes\":[0]}]";
+  CHECK(contains(error_of("a.glb", w.glb(instanced), options), "vertices; simplify the model"));
+}
+
 // Goal: every byte of the geometry counts towards the limit, also what fills in for meshes without normals, texture
 // coordinates or colours where others have them. Method: what is charged is what is there, in both orders.
 TEST_CASE("import_counts_what_fills_in_for_other_meshes") {

@@ -72,6 +72,19 @@ TEST_CASE("hard_68_polygons_are_filled_alike_in_every_format") {
   }
 }
 
+// Goal: a face that names a corner twice has as many triangles as its corners say. Method: a quadrilateral, and a file
+// that others report as read wrongly.
+TEST_CASE("hard_68_corners_named_twice_keep_their_triangles") {
+  TemporaryFolder folder;
+  const ImportedScene quad = load(folder.write("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 2 3\n"));
+  CHECK(quad.scene.triangles.count == 2);
+  const std::string path = shared_scene("hostile/tinyobjloader/issue-319-002.obj");
+  if (!have(path)) return;
+  const ImportedScene imported = load(path);
+  CHECK(imported.scene.triangles.count == 14);
+  CHECK(surface_area(imported.scene) == doctest::Approx(19.58).epsilon(1e-3));
+}
+
 // Goal: corners of a concave face keep their texture coordinates and normals. Method: coordinates that equal positions.
 TEST_CASE("hard_68_corners_of_polygons_keep_their_attributes") {
   TemporaryFolder folder;

@@ -11,8 +11,9 @@
 namespace pocketray {
 namespace {
 
-constexpr std::size_t kFloodBytes = 1024;  // that a flood keeps queued
-constexpr int kRefillsMax = 2;             // between two polls of the link
+constexpr std::size_t kFloodBytes = 1024;         // that a flood keeps queued
+constexpr std::size_t kQueuedBytesMax = 1 << 12;  // unread answers, after which it reads no more
+constexpr int kRefillsMax = 2;                    // between two polls of the link
 const platform::LinkBackend& net = platform::kNullLink;
 
 using Connection = HostileConnection;
@@ -266,8 +267,9 @@ bool step_connection(HostileServer* server, Connection* c) {
   platform::Error error;
   std::uint8_t part[1024];
   std::size_t count = 0;
-  platform::LinkResult result;
-  while ((result = net.read(server->link, c->stream, part, sizeof part, &count, &error)) == platform::LinkResult::done)
+  platform::LinkResult result = platform::LinkResult::later;
+  while (c->out.size() < kQueuedBytesMax &&
+         (result = net.read(server->link, c->stream, part, sizeof part, &count, &error)) == platform::LinkResult::done)
     c->in.insert(c->in.end(), part, part + count);
   if (result != platform::LinkResult::later) return false;
   std::size_t begin = 0;
@@ -340,7 +342,7 @@ void add_hostile_waits(const HostileServer& server, std::vector<platform::LinkWa
   wait.stream = server.listener, wait.want_read = true;
   waits->push_back(wait);
   for (const auto& c : server.connections) {
-    wait.stream = c->stream;
+    wait.stream = c->stream, wait.want_read = c->out.size() < kQueuedBytesMax;
     waits->push_back(wait);
   }
 }

@@ -29,6 +29,16 @@ struct MapBytes {
   }
 };
 
+// Two servers on a good line.
+FaultPlan calm_plan(SplitKind split) {
+  FaultPlan plan = draw_faults(1);
+  plan.width = 16, plan.height = 12, plan.server_count = 2;
+  plan.device_ns = 100e3, plan.server_ns[0] = plan.server_ns[1] = 1e3, plan.device_share = -1;
+  plan.line = platform::NullLinkSettings(), plan.line.clock_step_ns = 20, plan.event_count = 0;
+  plan.split = split;
+  return plan;
+}
+
 bool logged(const std::vector<std::string>& log, const char* text) {
   return std::any_of(log.begin(), log.end(),
                      [&](const std::string& line) { return line.find(text) != std::string::npos; });
@@ -69,6 +79,7 @@ TEST_CASE("light_request_ends_the_rows_before_it") {
         CHECK(rig.frame() < 2.2);
       }
       CHECK(is_sent);
+      CHECK(rig.log.empty());
     }
 }
 
@@ -165,17 +176,14 @@ TEST_CASE("light_that_is_left_out_drops_the_server") {
 }
 
 // Goal: a good second server lights the frames where the first sends no light, in pictures for files and in views.
-// Method: two servers, one of which is hostile; until the light comes, then ten frames.
+// Method: two servers, one of which is hostile; until the light comes, then while the other comes back.
 TEST_CASE("light_comes_from_the_next_server") {
   for (std::uint64_t wait_ns : {std::uint64_t(0), std::uint64_t(60 * kSecondNs)})
     for (std::uint32_t bad : {0u, 1u}) {
       CAPTURE(wait_ns);
       CAPTURE(bad);
-      FaultPlan plan = draw_faults(1);
-      plan.width = 16, plan.height = 12, plan.server_count = 2;
-      plan.device_ns = 100e3, plan.server_ns[0] = plan.server_ns[1] = 1e3, plan.device_share = -1;
-      plan.line = platform::NullLinkSettings(), plan.line.clock_step_ns = 20, plan.event_count = 0;
-      plan.split = SplitKind::effect, plan.light_wait_ns = wait_ns;
+      FaultPlan plan = calm_plan(SplitKind::effect);
+      plan.light_wait_ns = wait_ns;
       plan.malice[bad] = Malice::no_light;
       FaultWorld world;
       open_fault_world(plan, &world);
@@ -190,7 +198,12 @@ TEST_CASE("light_comes_from_the_next_server") {
       for (int i = 1; !is_lit && i < 10'000; ++i) is_lit = frame(i % 2);
       CHECK(is_lit);
       CHECK(world.elapsed() - begin < 2 * kSilenceNs);
-      for (int i = 0; i < 10; ++i) CHECK(frame(i % 5));
+      // The other returns meanwhile.
+      for (int i = 0; world.elapsed() - begin < 6 * kSilenceNs; ++i) {
+        CHECK(frame(i % 5));
+        CHECK(world.client.share.light_age <= 2);
+      }
+      CHECK(world.client.servers[bad].phase >= ServerPhase::probing);
       CHECK(world.log.size() <= 1);
       close_client(&world.client);
       close_fault_world(&world);
@@ -200,11 +213,7 @@ TEST_CASE("light_comes_from_the_next_server") {
 // Goal: a server that is asked for nothing, as others light all frames, keeps its connection. Method: two servers and
 // frames by effect, for much longer than servers keep a silent client.
 TEST_CASE("light_of_one_server_keeps_the_other_connected") {
-  FaultPlan plan = draw_faults(1);
-  plan.width = 16, plan.height = 12, plan.server_count = 2;
-  plan.device_ns = 100e3, plan.server_ns[0] = plan.server_ns[1] = 1e3, plan.device_share = -1;
-  plan.line = platform::NullLinkSettings(), plan.line.clock_step_ns = 20, plan.event_count = 0;
-  plan.split = SplitKind::effect;
+  const FaultPlan plan = calm_plan(SplitKind::effect);
   FaultWorld world;
   open_fault_world(plan, &world);
   for (int i = 0; world.elapsed() < 5 * kServerIdleNs; ++i)
@@ -213,4 +222,22 @@ TEST_CASE("light_of_one_server_keeps_the_other_connected") {
   CHECK(world.log.empty());
   close_client(&world.client);
   close_fault_world(&world);
+}
+
+// Goal: where the faster way is taken, a server whose rows never come in time does not keep frames from being shared by
+// effect. Method: two servers, one of which takes a second for a row, and a camera that turns.
+TEST_CASE("light_is_tried_beside_a_server_that_never_gets_ready") {
+  SplitRigOptions o = effect_rig("cornell");
+  o.client.light.split = SplitKind::automatic, o.client.light.wait_ns = 0;
+  o.server_count = 2;
+  o.device_ns = 100e3, o.server_ns = {20e6, 10e3};
+  SplitRig rig(o);
+  int by_effect = 0;
+  for (int i = 0; by_effect < int(kTrialFrames) && i < 300; ++i) {
+    turn(&rig.device->renderer, 1);
+    by_effect += rig.frame(0).by_effect;
+  }
+  CHECK(rig.client.servers[0].phase == ServerPhase::probing);
+  CHECK(rig.client.servers[1].phase == ServerPhase::ready);
+  CHECK(by_effect >= int(kTrialFrames));
 }

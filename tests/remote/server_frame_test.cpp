@@ -338,8 +338,8 @@ TEST_CASE("server_interrupts_rows_that_take_long") {
 }
 
 // Goal: clients get equal shares of the CPU, whatever they request, and learn the resulting price. Method: two
-// clients of an emulated CPU request frame after frame for 4 s: one small pictures in chunks of a row, the other large
-// ones in chunks of 16 rows. A third that comes later gets no more than its share.
+// clients of an emulated CPU request frame after frame for 4 s, once they are no newcomers: one small pictures in chunks
+// of a row, the other large ones in chunks of 16 rows. A third that comes later gets no more than its share.
 TEST_CASE("server_shares_its_time_fairly") {
   ServerOptions options;
   options.pace.ns_per_pixel = 20'000;
@@ -368,11 +368,13 @@ TEST_CASE("server_shares_its_time_fairly") {
       return rig.now() >= until;
     });
   };
+  run_for(800 * kMs, 2);
   run_for(4000 * kMs, 2);
   CHECK(static_cast<double>(pixels[0]) == doctest::Approx(100'000).epsilon(0.1));
   CHECK(static_cast<double>(pixels[1]) == doctest::Approx(100'000).epsilon(0.1));
   CHECK(second.chunks.back().pixel_ps == doctest::Approx(2e7).epsilon(0.05));
   CHECK(second.chunks.back().price == doctest::Approx(2 * kPriceUnit).epsilon(0.1));
+  run_for(800 * kMs, 3);
   run_for(3000 * kMs, 3);
   for (std::uint64_t count : pixels) CHECK(static_cast<double>(count) == doctest::Approx(50'000).epsilon(0.1));
 }

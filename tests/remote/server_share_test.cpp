@@ -3,6 +3,7 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <vector>
 
 #include "base/limit_list.h"
@@ -23,21 +24,19 @@ struct Player {
 
 void play(std::vector<Player>* players, Lanes* lanes, std::uint64_t ns, std::uint64_t piece_ns = 10 * kMs) {
   for (std::uint64_t now = 0; now < ns; now += piece_ns) {
-    int first[2] = {-1, -1};
+    Choice choice;
     for (std::size_t i = 0; i < players->size(); ++i) {
       Player* p = &(*players)[i];
       forgive(&p->account, piece_ns, players->size());
       observe_demand(&p->account, piece_ns);
       note(lanes, &p->account, true);
-      int* best = &first[p->account.heavy ? 1 : 0];
-      if (*best < 0 || goes_before(p->account, (*players)[static_cast<std::size_t>(*best)].account))
-        *best = static_cast<int>(i);
+      consider(&choice, static_cast<int>(i), p->account);
     }
-    Player* p = &(*players)[static_cast<std::size_t>(first[choose_lane(lanes, first[0] >= 0, first[1] >= 0)])];
+    Player* p = &(*players)[static_cast<std::size_t>(choose(lanes, choice))];
     charge(lanes, &p->account, piece_ns);
     p->got_ns += piece_ns;
     if (p->frame_ns == 0) {
-      owe(&p->account, piece_ns);
+      owe_messages(&p->account, piece_ns);
       continue;
     }
     p->account.job_ns += piece_ns;
@@ -96,13 +95,84 @@ TEST_CASE("share_forgives_who_asks_for_less") {
   Account a;
   end_frame(&a, 5'000 * kMs, 5'000 * kMs);
   CHECK(a.owed_ns == kOwedNsMax);
-  CHECK(is_heavy(a));
+  CHECK(lane_of(a) == Lane::heavy);
   for (int i = 0; i < 3; ++i) end_frame(&a, 100 * kMs, 100 * kMs);
-  CHECK_FALSE(is_heavy(a));
+  CHECK(lane_of(a) == Lane::light);
   for (int i = 0; i < 2; ++i) end_frame(&a, 200 * kMs, 10 * kMs);  // abandoned
-  CHECK(is_heavy(a));
+  CHECK(lane_of(a) == Lane::heavy);
   forgive(&a, 1'000'000 * kMs, 4);
   CHECK(a.owed_ns == 0);
+}
+
+// Goal: an account's standing follows from what it was sent and what it owes: a newcomer becomes light by a light
+// frame, however long its renderer took to build, and heavy by a flood, by messages sooner than by frames; a tiny frame
+// buys little trust. Method: the lane after each.
+TEST_CASE("share_trusts_who_was_sent_light_frames") {
+  Account honest;
+  CHECK(lane_of(honest) == Lane::newcomer);
+  honest.job_ns = kNewcomerNs;
+  CHECK(lane_of(honest) == Lane::newcomer);
+  honest.job_ns += 1;
+  CHECK(lane_of(honest) == Lane::heavy);
+  honest.job_ns = 450 * kMs;
+  end_frame(&honest, 450 * kMs, 200 * kMs, 250 * kMs);
+  CHECK(lane_of(honest) == Lane::light);
+  Account views;
+  end_frame(&views, 60 * kMs, 0, 55 * kMs);
+  CHECK(lane_of(views) == Lane::heavy);
+  Account flood;
+  owe_messages(&flood, kNewcomerNs / kNewcomerMessages);
+  CHECK(lane_of(flood) == Lane::newcomer);
+  owe_messages(&flood, kMs);
+  CHECK(lane_of(flood) == Lane::heavy);
+  Account tiny;
+  end_frame(&tiny, 2 * kMs, 2 * kMs);
+  CHECK(lane_of(tiny) == Lane::light);
+  owe_messages(&tiny, 9 * kMs);
+  CHECK(lane_of(tiny) != Lane::light);
+}
+
+// Goal: newcomers wait for those seated before them and for nobody else, however many come. Method: a newcomer with a
+// frame of 40 ms behind seven that want ever more; whenever one of them becomes heavy, another newcomer takes its
+// place.
+TEST_CASE("share_serves_newcomers_by_seniority") {
+  std::vector<Player> players(9);
+  Lanes lanes;
+  for (std::size_t i = 0; i < players.size(); ++i) players[i].frame_ns = 10'000 * kMs, players[i].account.seat = i;
+  players[7].frame_ns = 40 * kMs;
+  std::uint64_t seats = players.size(), now = 0;
+  for (; now < 10'000 * kMs && lane_of(players[7].account) == Lane::newcomer; now += 10 * kMs) {
+    play(&players, &lanes, 10 * kMs);
+    for (Player& p : players)
+      if (lane_of(p.account) == Lane::heavy) p = Player(), p.frame_ns = 10'000 * kMs, p.account.seat = seats++;
+  }
+  CHECK(lane_of(players[7].account) == Lane::light);
+  CHECK(now <= 7 * (kNewcomerNs + 10 * kMs) + 40 * kMs);
+}
+
+// Goal: a light account loses at most a quarter of the time to newcomers and heavy ones together, from its first
+// request on and after each pause. Method: its frames of 40 ms with pauses of 20 ms, beside twenty of each kind; the
+// longest.
+TEST_CASE("share_of_a_light_account_holds_from_the_first_frame") {
+  std::vector<Player> players(41);
+  Lanes lanes;
+  for (std::size_t i = 0; i < players.size(); ++i) players[i].frame_ns = 10'000 * kMs, players[i].account.seat = i;
+  players[0].frame_ns = 0;
+  end_frame(&players[0].account, 40 * kMs, 40 * kMs);
+  for (std::size_t i = 1; i <= 20; ++i) owe(&players[i].account, kOwedNsMax);
+  constexpr std::uint64_t kPiece = 4 * kMs;
+  std::uint64_t longest = 0;
+  for (int frame = 0; frame < 50; ++frame) {
+    std::vector<Player> others(players.begin() + 1, players.end());
+    for (int idle = 0; idle < 5; ++idle) play(&others, &lanes, kPiece, kPiece);
+    std::copy(others.begin(), others.end(), players.begin() + 1);
+    players[0].account.waits = false;
+    players[0].frame_ns = 40 * kMs, players[0].got_ns = 0;
+    std::uint64_t took = 0;
+    for (; players[0].got_ns < 40 * kMs; took += kPiece) play(&players, &lanes, kPiece, kPiece);
+    longest = std::max(longest, took);
+  }
+  CHECK(longest <= 2 * 40 * kMs);
 }
 
 // Goal: all ports of an address, and all hosts of an IPv6 network, count as one; other addresses do not. Method: names
@@ -136,7 +206,7 @@ TEST_CASE("share_price_is_what_others_take") {
   CHECK(half.demand == doctest::Approx(0.5).epsilon(0.05));
   CHECK(never.demand == 0);
   Account heavy = always;
-  heavy.heavy = true;
+  heavy.lane = Lane::heavy;
   struct Case {
     std::vector<Account> others;
     double light_price, heavy_price;
@@ -156,7 +226,7 @@ TEST_CASE("share_price_is_what_others_take") {
     clear_demand(&lanes);
     for (const Account& other : c.others) add_demand(&lanes, other);
     Account own;
-    own.heavy = true;
+    own.lane = Lane::heavy;
     CHECK(crowding(lanes, own) == doctest::Approx(c.heavy_price).epsilon(0.02));
   }
   CHECK(price_of(1, 1) == kPriceUnit);

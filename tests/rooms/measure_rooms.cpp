@@ -13,6 +13,7 @@
 #ifdef POCKETRAY_HAVE_IMPORT
 #include "import/import.h"
 #endif
+#include "plan/plan_scene.h"
 #include "radiosity/reference/room_light.h"
 
 using namespace pocketray;
@@ -51,6 +52,10 @@ void measure_file(const std::string& path, Measurement* m) {
   const Status status = import_scene(path, ImportOptions(), &imported);
   if (!status.ok) {
     std::printf("| %s | skipped: %s |\n", path.c_str(), status.message);
+    return;
+  }
+  if (!lights_itself(imported.scene)) {
+    std::printf("| %s | no light of its own |\n", path.c_str());
     return;
   }
   m->measure(path.substr(path.rfind('/') + 1).c_str(), imported.scene);

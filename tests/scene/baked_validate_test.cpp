@@ -355,7 +355,7 @@ TEST_CASE("validate_scene_refuses_bad_nodes_and_channels") {
     f->nodes[2].weight_count = kMorphTargetCountMax + 1, f->weights.resize(kMorphTargetCountMax + 1);
   });
   refuses("channels[1]", [](FullScene* f) { f->channels[1].node = 3; });
-  refuses("channels[0]", [](FullScene* f) { f->channels[0].path = unknown<ChannelPath>(4); });
+  refuses("channels[0]", [](FullScene* f) { f->channels[0].path = unknown<ChannelPath>(kChannelPathCount); });
   refuses("channels[0]", [](FullScene* f) { f->channels[0].interpolation = unknown<Interpolation>(3); });
   refuses("channels[2]", [](FullScene* f) { f->channels[2].key_count = 0; });
   refuses("channels[2]", [](FullScene* f) { f->channels[2].key_begin = 2; });
@@ -365,10 +365,21 @@ TEST_CASE("validate_scene_refuses_bad_nodes_and_channels") {
   refuses("channels[2]", [](FullScene* f) { f->channels[2].node = 0; });  // has no weights
   refuses("channels[0]", [](FullScene* f) { f->key_times[2] = f->key_times[1]; });
   refuses("channels[0]", [](FullScene* f) { f->key_times[0] = -1; });
-  refuses("animations[1]", [](FullScene* f) { f->animations[1].channel_count = 2; });
+  refuses("animations[1]", [](FullScene* f) { f->animations[1].channel_count = 20; });
   refuses("animations[1]", [](FullScene* f) { f->animations[1].channel_begin = kNone; });
   for (float bad : {kNan, kInf, -1.0f})
     refuses("animations[0]", [=](FullScene* f) { f->animations[0].duration = bad; });
+  refuses("channels[5] changes light", [](FullScene* f) { f->channels[5].node = 9; });
+  refuses("channels[7] changes camera", [](FullScene* f) { f->channels[7].node = 9; });
+  refuses("channels[8] changes material", [](FullScene* f) { f->channels[8].node = kNone; });
+  refuses("2 animation_labels", [](FullScene* f) { f->animation_labels.pop_back(); });
+  refuses("animation_labels[1]", [](FullScene* f) { f->animation_labels[1].combines = 2; });
+  refuses("2 node_visible", [](FullScene* f) { f->node_visible.pop_back(); });
+  refuses("node_visible[2]", [](FullScene* f) { f->node_visible[2] = 2; });
+  refuses("2 origins", [](FullScene* f) { f->origin.push_back({}); });
+  for (double bad : {static_cast<double>(kNan), static_cast<double>(kInf), 1e19})
+    refuses("origin", [=](FullScene* f) { f->origin[0].y = bad; });
+  accepts([](FullScene* f) { f->animation_labels.clear(), f->node_visible.clear(), f->origin.clear(); });
 }
 
 TEST_CASE("validate_scene_refuses_bad_skins_and_moving_meshes") {

@@ -61,7 +61,16 @@ void make_motion(Rng* rng, std::uint32_t vertex_count, FullScene* f) {
                  {1, 0, 3, 5, ChannelPath::rotation, Interpolation::linear},
                  {2, 1, 2, 9, ChannelPath::weights, Interpolation::step},
                  {1, 0, 2, 2, ChannelPath::scale, Interpolation::linear}};
-  f->animations = {{0, 3, 2}, {3, 1, 0.5f}};
+  f->channels.insert(f->channels.end(), {{1, 0, 3, 0, ChannelPath::visibility, Interpolation::step},
+                                         {0, 0, 3, 0, ChannelPath::light_intensity, Interpolation::linear},
+                                         {0, 0, 3, 0, ChannelPath::light_scale, Interpolation::cubic},
+                                         {1, 0, 3, 3, ChannelPath::camera_size, Interpolation::linear},
+                                         {1, 0, 3, 0, ChannelPath::material_diffuse, Interpolation::linear},
+                                         {2, 0, 3, 0, ChannelPath::material_emission, Interpolation::step}});
+  f->animations = {{0, 3, 2}, {3, 1, 0.5f}, {4, 6, 2}};
+  f->animation_labels = {{"both", "0, 1", 1}, {"sway", "node 2 (weights)", 0}, {"dim", "light 0 (intensity)", 0}};
+  f->node_visible.assign(3, 1);
+  f->origin = {{431250.37, 120.5, -5411875.62}};
   f->joints = {{0, Transform()}, {1, Transform()}};
   f->joints[1].inverse_bind.m[0][3] = -1;
   f->skins = {{0, 2}};
@@ -93,6 +102,8 @@ void FullScene::bind() {
   scene.environment_info = view(environment_info), scene.environment_texels = view(environment_texels);
   scene.grains = view(grains), scene.tangents = view(tangents), scene.second_uvs = view(second_uvs);
   scene.clear_coats = view(clear_coats), scene.default_view = view(default_view);
+  scene.animation_labels = view(animation_labels), scene.node_visible = view(node_visible);
+  scene.origin = view(origin);
 }
 
 void make_full_scene(std::uint64_t seed, std::uint32_t vertex_count, std::uint32_t triangle_count, FullScene* full) {

@@ -95,6 +95,30 @@ TEST_CASE("hard_36_disk_light") {
   }
 }
 
+// Goal: a lamp that comes down to the floor lights it with E → πL, and on the way as its outline does. Method: a
+// regular octagon about the axis at heights down to 1e-6 of its radius; 8 triangles seen from the axis, each with the
+// closed form of a polygon, φ sin β/(2π) for the side that subtends φ, whose plane leans by β from the floor's normal.
+TEST_CASE("hard_36_lamp_close_to_the_floor") {
+  count_assertions("closed form within 1e-4, also of its limit");
+  for (double h : {1.0, .5, .1, .01, 1e-3, 1e-4, 1e-6}) {
+    CAPTURE(h);
+    GeneratedScene s;
+    add_sheet(&s, 0, add_material(&s, matte(kAlbedo)), false, 0.1f);
+    const std::uint32_t lamp = add_lamp(&s), middle = add_vertex(&s, {0, 0, float(h)}), first = middle + 1;
+    for (int i = 0; i < 8; ++i) {
+      const double angle = 2 * kPiD * i / 8;
+      add_vertex(&s, {float(std::cos(angle)), float(std::sin(angle)), float(h)});
+    }
+    for (std::uint32_t i = 0; i < 8; ++i) add_triangle(&s, middle, first + (i + 1) % 8, first + i, lamp);
+    const double apothem = std::cos(kPiD / 8), side = std::sin(kPiD / 8), far = std::sqrt(apothem * apothem + h * h);
+    const double expected = 8 * 2 * std::atan(side / far) * apothem / far / 2;
+    const auto t = ray_renderer(&s);
+    const double e = double(look(*t, {0, 0, float(h / 2)}, {0, 0, 0}).x) * kPiD / double(kAlbedo);
+    CHECK(e == doctest::Approx(expected).epsilon(1e-4));
+    if (h <= 1e-4) CHECK(e == doctest::Approx(kPiD).epsilon(2e-4));
+  }
+}
+
 // Goal: the unit square at height 1: form factors .2394565 to the centre below and .1385316 below a corner. Method:
 // closed form; 256 points reach it to one part in a thousand, n points to 0.36 / n, as midpoints of cells do.
 TEST_CASE("hard_37_unit_square_light") {

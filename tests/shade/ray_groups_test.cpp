@@ -10,6 +10,7 @@
 #undef CHECK_GE
 #include <doctest/doctest.h>
 
+#include <cmath>
 #include <memory>
 
 #include "base/rng.h"
@@ -39,8 +40,11 @@ struct HalfFaintSources : RandomSources {
   static constexpr float kFaint = 0.5f;
 };
 
-std::uint32_t hidden_source;
+std::uint32_t hidden_source = kNone;
+const float* hidden_brightness = nullptr;  // null: `hidden_source` alone is hidden
+float hidden_below = 0;
 bool hides(const Accel&, const Ray& ray, const HitFilter*, TraceStats*) {
+  if (hidden_brightness) return hidden_brightness[static_cast<std::uint32_t>(ray.direction.x)] < hidden_below;
   return ray.direction.x == static_cast<float>(hidden_source);
 }
 
@@ -74,9 +78,9 @@ struct Gathering {
 
 }  // namespace
 
-// Goal: a ray that stands for some sources errs by less than the tolerance's share of the light, and there are few rays
-// however many sources [Walter05]. Method: random sources, each hidden in turn; against a ray to every source.
-TEST_CASE("ray_groups_err_less_than_the_tolerance") {
+// Goal: a ray that stands for some sources errs by less than twice the tolerance's share of the light, and there are
+// few rays however many sources [Walter05]. Method: random sources, each hidden in turn; against a ray to every source.
+TEST_CASE("ray_groups_err_less_than_twice_the_tolerance") {
   std::uint64_t saved = 0;
   for (std::uint32_t seed = 1; seed <= 8; ++seed) {
     const auto gathering = std::make_unique<Gathering>(seed);
@@ -91,7 +95,7 @@ TEST_CASE("ray_groups_err_less_than_the_tolerance") {
         for (hidden_source = place; hidden_source < count; hidden_source += kPatternPixels) {
           const InterleavedLight light = gathering->of(grouped, place, &ray_count),
                                  exact = gathering->of(every, place, &all_count);
-          CHECK(max_component(abs(light.lit - exact.lit)) <= (tolerance + 1e-5f) * light.open.x);
+          CHECK(max_component(abs(light.lit - exact.lit)) <= (2 * tolerance + 1e-5f) * light.open.x);
           CHECK(light.open == exact.open);
           if (tolerance > 0) CHECK(static_cast<float>(ray_count) <= 1 + 1 / tolerance);
           CHECK(ray_count <= all_count);
@@ -103,6 +107,31 @@ TEST_CASE("ray_groups_err_less_than_the_tolerance") {
       }
   }
   CHECK(saved > 10000);
+}
+
+// Goal: which source's ray stands for a group does not favour bright sources over hidden ones: the light that arrives
+// is right on average, however many sources there are. Method: the fainter half hidden, which has a part of the light
+// that is known; the mean over places and seeds.
+TEST_CASE("ray_groups_are_right_on_average") {
+  for (std::uint32_t count : {64u, 256u, 512u}) {
+    double found = 0, expected = 0, open = 0;
+    for (std::uint32_t seed = 1; seed <= 64; ++seed) {
+      const auto gathering = std::make_unique<Gathering>(seed);
+      hidden_below = .25f, hidden_brightness = gathering->brightness;
+      for (std::uint32_t place = 0; place < kPatternPixels; ++place) {
+        std::uint64_t rays;
+        gathering->surface.hit = {static_cast<float>(place) / kPatternPixels, static_cast<float>(seed) / 64, 0};
+        found +=
+            static_cast<double>(gathering->of(RandomSources{count, .5f, gathering->brightness}, place, &rays).lit.x);
+        const InterleavedLight every = gathering->of(RandomSources{count, 0, gathering->brightness}, place, &rays);
+        expected += static_cast<double>(every.lit.x), open += static_cast<double>(every.open.x);
+      }
+    }
+    hidden_brightness = nullptr;
+    CAPTURE(count);
+    CHECK(std::fabs(found - expected) < .02 * open);
+    CHECK(expected < .9 * open);
+  }
 }
 
 // Goal: the rays that are listed, for coherence, are those that are traced. Method: as many, and each that changes the

@@ -14,7 +14,7 @@ std::uint64_t steady_ns() {
   return static_cast<std::uint64_t>(std::chrono::steady_clock::now().time_since_epoch().count());
 }
 
-constexpr int kStreams = 64;
+constexpr int kStreams = 128;
 
 }  // namespace
 

@@ -82,6 +82,7 @@ TEST_CASE("viewer_answers_each_button") {
     std::string answer;
   } kAnswers[] = {{platform::Button::screenshot, std::string("saved ") + folder + "/pocketray-0001.p"},
                   {platform::Button::side_by_side, "V shows "},
+                  {platform::Button::animation, "nothing moves"},
                   {platform::Button::finer, "--budget-ms"},
                   {platform::Button::faster, "--budget-ms"}};
   for (const auto& row : kAnswers) {
@@ -103,6 +104,22 @@ TEST_CASE("viewer_answers_each_button") {
     }
   }
   rmdir(folder);
+}
+
+// Goal: N plays the next animation, then none, then the first again, and says so. Method: presses in the seesaw, which
+// has one.
+TEST_CASE("viewer_steps_through_animations") {
+  for (int presses : {1, 2}) {
+    Stage stage;
+    for (int i = 0; i < presses; ++i) stage.press(0.2 + 0.1 * i, platform::Button::animation);
+    stage.leave(0.8);
+    stage.open("seesaw");
+    OpenScene opened;
+    stage.show("seesaw", &opened);
+    CHECK(opened.renderer.animation == (presses == 1 ? kNone : 0u));
+    CHECK_MESSAGE(std::strstr(stage.viewer.note.text, presses == 1 ? "no animation plays" : "animation 0, "),
+                  stage.viewer.note.text);
+  }
 }
 
 // Goal: once its note is gone, the screen shows the picture again. Method: pixels before a note and after it.

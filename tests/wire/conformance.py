@@ -15,8 +15,8 @@ from device import *
 
 
 class Server:
-    def __init__(self, program, *more, threads="1", under=()):
-        words = [*under, program, "serve", "--listen", "127.0.0.1:0", "--threads", threads, "--memory", "16M", *more]
+    def __init__(self, program, *more, threads="1", under=(), memory="16M"):
+        words = [*under, program, "serve", "--listen", "127.0.0.1:0", "--threads", threads, "--memory", memory, *more]
         self.process = subprocess.Popen(words, stdout=subprocess.PIPE, text=True)
         self.address = None
         for line in self.process.stdout:

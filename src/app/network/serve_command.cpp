@@ -7,6 +7,7 @@
 #include "app/options.h"
 #include "base/isa.h"
 #include "base/seal.h"
+#include "platform/cpu_time.h"
 #include "platform/net/descriptors.h"
 #include "platform/net/tcp.h"
 #include "platform/standard_streams.h"
@@ -178,6 +179,7 @@ int serve(const ServeOptions& o, const ClusterOptions& given, const ServeCluster
   Serving serving;
   ServerOptions options = given.server;
   options.helpers = cluster.helpers;
+  if (!cluster.helpers) options.cpu_ns = platform::thread_cpu_ns;  // it waits for them
   SceneStoreOptions store_options;
   store_options.folder = o.scenes;
   store_options.bytes_max = given.scene_bytes_max;

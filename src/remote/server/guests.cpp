@@ -16,6 +16,9 @@ constexpr std::uint64_t kLingerNs = 2'000'000'000;    // for a leaving peer to r
 constexpr std::uint64_t kMakeWayNs = 10'000'000'000;  // of silence after which a client makes way for another
 constexpr std::uint64_t kAcceptRestNs =
     1'000'000'000;  // pause after a failed accept, since what was short will not be free at once
+// After guests were tended, they rest for this many times what that took, but at most a slice, while sessions have
+// work. Chosen: a flood of connections takes about an eighth of the time.
+constexpr std::uint64_t kGuestRestFactor = 7;
 
 void queue(Guest* guest, const Message& message) { CHECK(send_message(&guest->messages, message)); }
 
@@ -78,15 +81,20 @@ void receive_guest(Server* server, int stream) {
   if (!flush(guest)) close_guest(guest);
 }
 
-// The least recently seen address without sessions.
+// The least recently seen address without sessions, preferably one that has not been sent light frames: whoever keeps
+// coming from new addresses makes the server forget only those.
 int forgotten_address(const Server& server) {
   const std::vector<Address>& all = server.addresses;
   int oldest = -1;
+  auto goes_before = [&](const Address& a, const Address& b) {
+    const bool proven[2] = {is_proven(a.account), is_proven(b.account)};
+    return proven[0] != proven[1] ? proven[1] : a.last_ns < b.last_ns;
+  };
   for (std::size_t i = 0; i < all.size(); ++i) {
     bool taken = std::any_of(server.sessions.begin(), server.sessions.end(), [&](const Session& session) {
       return session.phase != SessionPhase::unused && session.address == static_cast<int>(i);
     });
-    if (!taken && (oldest < 0 || all[i].last_ns < all[static_cast<std::size_t>(oldest)].last_ns))
+    if (!taken && (oldest < 0 || goes_before(all[i], all[static_cast<std::size_t>(oldest)])))
       oldest = static_cast<int>(i);
   }
   CHECK_GE(oldest, 0);  // there are more addresses than sessions
@@ -123,21 +131,30 @@ std::uint64_t silent_ns(Server* server, Session* session) {
   return server->options.idle_timeout_ns - std::min(left, server->options.idle_timeout_ns);
 }
 
-// The session that must leave for one of `address`: the longest silent one, of the address with most places, among
-// those whose address has at least two more places, and idle ones whose address has more places or is `address` itself.
-// Null if none.
+// The session that must leave for one of `address`; null if none. Those may have to whose address has at least two more
+// places, and idle ones whose address has more places or is `address` itself. Of the address with most places, one that
+// has not been sent light frames leaves first, then the longest silent. While `address` itself has such sessions, those
+// that have behaved keep their places from it.
 Session* find_leaver(Server* server, int address) {
   int own = places_of(*server, address), most = 0;
+  bool proven = true;
   std::uint64_t longest = 0;
   Session* chosen = nullptr;
+  const bool keeps_proven = std::any_of(server->sessions.begin(), server->sessions.end(), [&](const Session& session) {
+    return session.phase != SessionPhase::unused && session.address == address && !is_proven(session.account);
+  });
   for (Session& session : server->sessions) {
     if (session.phase == SessionPhase::unused) continue;
+    if (session.messages.ended) return &session;  // what it has sent would be answered to nobody
     int count = places_of(*server, session.address);
     std::uint64_t silent = silent_ns(server, &session);
     bool idle = session.phase == SessionPhase::leaving || (!has_job(session) && silent >= kMakeWayNs);
-    bool may_go = count >= own + 2 || (idle && (count > own || session.address == address));
-    if (!may_go || count < most || (count == most && chosen && silent <= longest)) continue;
-    chosen = &session, most = count, longest = silent;
+    bool from_own = session.address == address && !(keeps_proven && is_proven(session.account));
+    bool may_go = count >= own + 2 || (idle && (count > own || from_own));
+    if (!may_go || count < most) continue;
+    const bool worse = !is_proven(session.account), as_good = worse == !proven;
+    if (count == most && chosen && (as_good ? silent <= longest : !worse)) continue;
+    chosen = &session, most = count, longest = silent, proven = !worse;
   }
   return chosen;
 }
@@ -185,6 +202,9 @@ void seat(Server* server, Guest* guest, const Hello& hello) {
   restart_session(session, server->link, guest->messages.stream);
   session->phase = SessionPhase::serving;
   session->address = address;
+  Account* of_address = &server->addresses[static_cast<std::size_t>(address)].account;
+  session->account.seat = ++server->seat_count;
+  if (places_of(*server, address) == 1) of_address->seat = session->account.seat;
   session->price = newcomer_price(*server, guest->key);
   session->message_bytes_max = hello.message_bytes_max;
   std::snprintf(session->name, sizeof session->name, "%s", name_of(*server, *guest));
@@ -238,6 +258,9 @@ bool discard_input(MessageStream* messages) {
   return open;
 }
 
+namespace {
+
+// Reads a guest's input: with a hello it gets a place or is told there is none.
 void tend_guest(Server* server, Guest* guest) {
   CHECK(is_open(*guest));
   platform::Error error;
@@ -255,6 +278,7 @@ void tend_guest(Server* server, Guest* guest) {
   close_guest(guest);
 }
 
+// Accepts the connections waiting at the listener.
 void accept_clients(Server* server) {
   server->accept_rests = false;
   // More of one address would only displace each other.
@@ -272,6 +296,19 @@ void accept_clients(Server* server) {
     server->accept_timer = platform::link_timer(now_ns(server), kAcceptRestNs);
     return;
   }
+}
+
+}  // namespace
+
+void tend_guests(Server* server, bool comes) {
+  if (!comes && std::none_of(server->guests.begin(), server->guests.end(), is_open)) return;
+  const std::uint64_t start = cpu_now_ns(server);
+  if (platform::link_timer_left(&server->guest_rest, now_ns(server)) > 0 && work_due_ns(server) == 0) return;
+  if (comes) accept_clients(server);
+  for (Guest& guest : server->guests)
+    if (is_open(guest)) tend_guest(server, &guest);
+  const std::uint64_t now = cpu_now_ns(server), took = now > start ? now - start : 0;
+  server->guest_rest = platform::link_timer(now_ns(server), std::min(kGuestRestFactor * took, kSliceNs));
 }
 
 }  // namespace pocketray

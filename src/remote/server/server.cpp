@@ -30,12 +30,20 @@ void write_session(Server* server, Session* session) {
   if (!open) end_session(server, session, error.text);
 }
 
+void read_and_account(Server* server, Session* session) {
+  const std::uint64_t start = cpu_now_ns(server);
+  read_session(server, session);
+  const std::uint64_t now = cpu_now_ns(server);
+  if (session->phase != SessionPhase::unused && in_turn(*server) && now > start)
+    account_for(server, session, now - start, false);
+}
+
 // Sends queued output, and rows waiting for room unless they must also wait for their turn.
 void send_session(Server* server, Session* session) {
   for (;;) {
-    std::uint64_t start = now_ns(server), queued_before = queued_bytes(session->messages);
+    std::uint64_t start = cpu_now_ns(server), queued_before = queued_bytes(session->messages);
     write_session(server, session);
-    std::uint64_t now = now_ns(server);
+    std::uint64_t now = cpu_now_ns(server);
     if (in_turn(*server) && now > start && queued_before > 0) account_for(server, session, now - start, false);
     if (session->phase != SessionPhase::serving || in_turn(*server)) return;
     std::size_t queued = queued_bytes(session->messages);
@@ -247,13 +255,11 @@ void step_server(Server* server, std::uint64_t timeout_ns) {
   for (Session& session : server->sessions) {
     bool has_news = (wait++)->can_read;
     if (session.phase != SessionPhase::unused && (has_news || input_bytes(session.messages) > 0))
-      read_session(server, &session);
+      read_and_account(server, &session);
     if (session.phase == SessionPhase::serving && !in_turn(*server) && wants_messages(session))
       take_messages(server, &session);
   }
-  for (Guest& guest : server->guests)
-    if (is_open(guest)) tend_guest(server, &guest);
-  if (comes) accept_clients(server);
+  tend_guests(server, comes);
   do_work(server);
   for (Session& session : server->sessions) {
     if (session.phase != SessionPhase::unused) send_session(server, &session);

@@ -1,6 +1,7 @@
 // The render server: renders rows of frames for a few clients at once, each in its own memory, over the protocol of
 // wire/PROTOCOL.md. Driven by a step function: single-threaded except for tracing, no globals, blocks only while
-// polling the link. All times are from the link's clock.
+// polling the link. All times are from the link's clock, except clients' shares of the CPU: another program that has it
+// is no client's fault.
 #pragma once
 #include <cstdint>
 
@@ -34,6 +35,7 @@ struct ServerOptions {
   std::uint64_t message_timeout_ns = 10'000'000'000;       // for a complete message; for the hello, since connecting
   std::uint64_t idle_timeout_ns = 300'000'000'000;         // without a message and with nothing to send
   std::uint64_t stall_timeout_ns = 10'000'000'000;         // without the client reading anything
+  std::uint64_t (*cpu_ns)() = nullptr;                     // measures clients' shares; null: the link's clock
   void (*log)(void* context, const char* line) = nullptr;  // one line per event, rate-limited
   void* log_context = nullptr;
 };

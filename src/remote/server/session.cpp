@@ -151,13 +151,14 @@ void restart_session(Session* session, platform::Link* link, int connection) {
   CHECK(session->phase == SessionPhase::unused);
   Arena block = session->block;
   MessageStream messages = session->messages;
-  std::size_t frame_mark = session->frame_mark;
+  const std::size_t frame_mark = session->frame_mark, touched = session->touched_bytes;
   std::uint64_t job_number = session->job_number;
   *session = Session();
   session->job_number = job_number;
   session->block = block;
   session->messages = messages;
   session->frame_mark = frame_mark;
+  session->touched_bytes = touched;
   start_message_stream(&session->messages, link, connection);
 }
 
@@ -179,9 +180,11 @@ void drop_job(Session* session) {
   if (!has_job(*session)) return;
   CHECK_LE(job->rows_sent, job->rows_traced);
   job->scene = nullptr;
+  CHECK_LE(job->build_ns, job->took_ns);
   session->ended_took_ns += job->took_ns;
+  session->ended_build_ns += job->build_ns;
   if (!job->is_view_query && job->rows_traced > 0)
-    session->ended_sent_ns += job->took_ns * job->rows_sent / job->rows_traced;
+    session->ended_sent_ns += (job->took_ns - job->build_ns) * job->rows_sent / job->rows_traced;
 }
 
 bool has_chunk(const Session& session) {

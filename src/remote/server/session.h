@@ -36,7 +36,8 @@ enum class SessionPhase : std::uint8_t {
 
 // The next stage of a job. Each takes one slice of CPU time, or as many as its pixels need.
 enum class JobStage : std::uint8_t {
-  plan,           // codec and renderer
+  plan,           // codec and memory of the renderer
+  build,          // the renderer
   own_exposure,   // of the scene, if it must be measured
   aim,            // camera, time, lights
   search,         // for what may have changed since the last frame
@@ -63,7 +64,8 @@ struct FrameJob {
   bool codes_beside;                   // its finished chunk is coded beside the next slice
   std::uint64_t work_ns, pixel_count;  // of rows traced but not completely sent
   std::uint64_t took_ns;               // CPU time so far,
-  std::uint64_t prepare_ns;            // of this before the first pixel
+  std::uint64_t build_ns;              // of this for the renderer,
+  std::uint64_t prepare_ns;            // and before the first pixel
   // Of each row of the picture, the pixels traced, if several ranks share the job: its complete rows are then packed.
   // Null: this program alone renders.
   const std::uint32_t* row_pixels;
@@ -104,11 +106,12 @@ struct Session {
   std::uint32_t message_bytes_max = 0;  // largest message the client accepts
   int address = -1;                     // index of the server's account for its address
   Account account;
-  std::uint64_t ended_took_ns = 0, ended_sent_ns = 0;  // of finished frames not yet accounted for
-  std::uint32_t chunk_count = 0;                       // sent to the client
+  std::uint64_t ended_took_ns = 0, ended_sent_ns = 0, ended_build_ns = 0;  // of finished frames not yet accounted for
+  std::uint32_t chunk_count = 0;                                           // sent to the client
 
   Arena block;
-  std::size_t frame_mark = 0;  // in the block, behind the buffers
+  std::size_t frame_mark = 0;     // in the block, behind the buffers
+  std::size_t touched_bytes = 0;  // of the block, which the system has provided by now
   MessageStream messages;
   bool more_to_take = false;  // complete messages may wait in the input
 

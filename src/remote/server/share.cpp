@@ -9,31 +9,69 @@
 
 namespace pocketray {
 
+namespace {
+
+// The side whose turn it is; at least one waits.
+int choose_side(Turns* turns, bool first_waits, bool second_waits) {
+  const bool waits[2] = {first_waits, second_waits};
+  for (int side = 0; side < 2; ++side) {
+    // A side that was away is credited little of the time.
+    const std::uint64_t other = turns->used_ns[1 - side], credit = std::min(other, kCreditNs);
+    if (waits[side] && !turns->waits[side]) turns->used_ns[side] = std::max(turns->used_ns[side], other - credit);
+    turns->waits[side] = waits[side];
+  }
+  if (!first_waits || !second_waits) return second_waits ? 1 : 0;
+  return turns->used_ns[1] < turns->used_ns[0] ? 1 : 0;
+}
+
+void take_turn(Turns* turns, int side, std::uint64_t took_ns) {
+  turns->used_ns[side] += took_ns * (side == 1 ? kBehindPart - 1 : 1);
+}
+
+}  // namespace
+
+Lane lane_of(const Account& account) {
+  const std::uint64_t debt = account.owed_ns + account.job_ns;
+  if (is_proven(account) && debt <= std::min(kLightNs, kTrustFactor * account.earned_ns)) return Lane::light;
+  return debt <= kNewcomerNs ? Lane::newcomer : Lane::heavy;
+}
+
 void note(Lanes* lanes, Account* account, bool waits) {
-  bool heavy = is_heavy(*account);
-  std::uint64_t floor = lanes->floor_ns[heavy], credit = account->known ? std::min(floor, kCreditNs) : 0;
-  if (heavy != account->heavy) account->used_ns = floor;
+  const Lane lane = lane_of(*account);
+  std::uint64_t floor = lanes->floor_ns[static_cast<int>(lane)];
+  std::uint64_t credit = account->known ? std::min(floor, kCreditNs) : 0;
+  if (lane != account->lane) account->used_ns = floor;
   if (waits && !account->waits) account->used_ns = std::max(account->used_ns, floor - credit);
-  account->heavy = heavy;
+  account->lane = lane;
   account->waits = waits;
   account->known = account->known || waits;
 }
 
-int choose_lane(Lanes* lanes, bool light_waits, bool heavy_waits) {
-  const bool waits[2] = {light_waits, heavy_waits};
-  for (int lane = 0; lane < 2; ++lane) {
-    // A lane is not compensated for the time it was empty.
-    if (waits[lane] && !lanes->waits[lane]) lanes->used_ns[lane] = std::max(lanes->used_ns[0], lanes->used_ns[1]);
-    lanes->waits[lane] = waits[lane];
-  }
-  if (!light_waits || !heavy_waits) return heavy_waits ? 1 : 0;
-  return lanes->used_ns[1] < lanes->used_ns[0] ? 1 : 0;
+void consider(Choice* choice, int index, const Account& account) {
+  if (!account.waits) return;
+  const int lane = static_cast<int>(account.lane);
+  const Account* first = choice->accounts[lane];
+  const bool by_seat = account.lane == Lane::newcomer;
+  if (first && (by_seat ? account.seat >= first->seat : account.used_ns >= first->used_ns)) return;
+  choice->first[lane] = index;
+  choice->accounts[lane] = &account;
+}
+
+int choose(Lanes* lanes, const Choice& choice) {
+  const auto waits = [&](Lane lane) { return choice.first[static_cast<int>(lane)] >= 0; };
+  const bool behind = waits(Lane::newcomer) || waits(Lane::heavy);
+  if (!waits(Lane::light) && !behind) return -1;
+  Lane lane = Lane::light;
+  if (choose_side(&lanes->light, waits(Lane::light), behind) == 1)
+    lane = choose_side(&lanes->behind, waits(Lane::newcomer), waits(Lane::heavy)) == 1 ? Lane::heavy : Lane::newcomer;
+  return choice.first[static_cast<int>(lane)];
 }
 
 void charge(Lanes* lanes, Account* account, std::uint64_t took_ns) {
-  int lane = account->heavy ? 1 : 0;
+  const int lane = static_cast<int>(account->lane);
   lanes->floor_ns[lane] = std::max(lanes->floor_ns[lane], account->used_ns);
-  lanes->used_ns[lane] += took_ns * (lane == 1 ? kHeavyPart - 1 : 1);
+  take_turn(&lanes->light, account->lane == Lane::light ? 0 : 1, took_ns);
+  if (account->lane != Lane::light) take_turn(&lanes->behind, is_heavy(*account) ? 1 : 0, took_ns);
   account->used_ns += took_ns;
 }
 
@@ -41,10 +79,15 @@ void owe(Account* account, std::uint64_t took_ns) {
   account->owed_ns = std::min(account->owed_ns + took_ns, kOwedNsMax);
 }
 
-void end_frame(Account* account, std::uint64_t took_ns, std::uint64_t sent_ns) {
+void owe_messages(Account* account, std::uint64_t took_ns) {
+  owe(account, is_proven(*account) ? took_ns : kNewcomerMessages * took_ns);
+}
+
+void end_frame(Account* account, std::uint64_t took_ns, std::uint64_t sent_ns, std::uint64_t build_ns) {
   account->job_ns -= std::min(account->job_ns, took_ns);
-  bool light = took_ns <= kLightNs;
+  bool light = took_ns <= kLightNs + build_ns;
   if (light) account->owed_ns -= std::min(account->owed_ns, sent_ns);
+  if (light) account->earned_ns = std::min(account->earned_ns + std::min(took_ns, sent_ns), kLightNs);
   owe(account, light ? took_ns - std::min(took_ns, sent_ns) : took_ns);
 }
 
@@ -60,10 +103,10 @@ void observe_demand(Account* account, std::uint64_t passed_ns) {
 }
 
 double crowding(const Lanes& lanes, const Account& account) {
-  const int lane = account.heavy ? 1 : 0;
+  const int lane = is_heavy(account) ? 1 : 0;
   const double others = std::max(0.0, lanes.demand[lane] - account.demand);
   // The turns that the other lane takes while it has work.
-  constexpr double kHeavyTurns = 1.0 / kHeavyPart;
+  constexpr double kHeavyTurns = 1.0 / kBehindPart;
   const double lost = std::min(1.0, lanes.demand[1 - lane]) * (lane == 1 ? 1 - kHeavyTurns : kHeavyTurns);
   return (1 + others) / (1 - lost);
 }

@@ -41,8 +41,10 @@ struct Work {
   int message_count = 0;
   std::uint64_t byte_count = 0;  // of the answers
   std::uint64_t job_number = 0;
-  Slice slice = {};  // without pixels: preparing a frame
+  Slice slice = {};       // without pixels: preparing a frame
+  bool is_build = false;  // prepares the renderer for frames to come
   std::uint64_t begin_ns = 0, end_ns = 0;
+  std::uint64_t cpu_ns = 0;   // to charge
   platform::LinkTimer timer;  // until the emulated CPU has done it
 };
 
@@ -54,6 +56,8 @@ struct Server {
   int listener = -1;
   bool accept_rests = false;  // the listener is not polled until the timer expires
   platform::LinkTimer accept_timer;
+  platform::LinkTimer guest_rest;  // until then, guests wait for work of the sessions
+  std::uint64_t seat_count = 0;    // given
   Workers* workers = nullptr;
   std::vector<Session> sessions;
   std::vector<void*> blocks;
@@ -71,6 +75,11 @@ struct Server {
 
 inline std::uint64_t now_ns(Server* server) { return server->net->now_ns(server->link); }
 
+// The clock by which the CPU's time is shared.
+inline std::uint64_t cpu_now_ns(Server* server) {
+  return server->options.cpu_ns ? server->options.cpu_ns() : now_ns(server);
+}
+
 // True if only the session with the CPU handles messages, as on a real CPU. An emulated CPU for which messages are free
 // handles them all at once.
 inline bool in_turn(const Server& server) { return !is_paced(server.options.pace) || server.options.message_ns > 0; }
@@ -78,10 +87,8 @@ inline bool in_turn(const Server& server) { return !is_paced(server.options.pace
 // ---- guests.cpp
 
 void close_guest(Guest* guest);
-// Accepts the connections waiting at the listener.
-void accept_clients(Server* server);
-// Reads a guest's input: with a hello it gets a place or is told there is none.
-void tend_guest(Server* server, Guest* guest);
+// Tends all guests and accepts more if `comes`, unless that has to wait.
+void tend_guests(Server* server, bool comes);
 // Drops pending input; false if the peer has closed.
 bool discard_input(MessageStream* messages);
 

@@ -12,6 +12,15 @@ constexpr double kBesideSlices = 10;
 
 std::uint64_t elapsed(std::uint64_t begin, std::uint64_t end) { return end > begin ? end - begin : 0; }
 
+// Time by both clocks, which may be one.
+struct Times {
+  std::uint64_t now, cpu;
+};
+Times times_of(Server* server) {
+  const std::uint64_t now = now_ns(server);
+  return {now, server->options.cpu_ns ? server->options.cpu_ns() : now};
+}
+
 // Accounts for finished frames and forgives debt for the time passed.
 void settle(Server* server, std::uint64_t now) {
   std::uint64_t passed = elapsed(server->settled_ns, now), count = 1;
@@ -19,10 +28,9 @@ void settle(Server* server, std::uint64_t now) {
   for (Session& session : server->sessions) {
     if (session.phase != SessionPhase::unused) ++count;
     if (session.address < 0 || session.ended_took_ns == 0) continue;
-    end_frame(&session.account, session.ended_took_ns, session.ended_sent_ns);
-    end_frame(&server->addresses[static_cast<std::size_t>(session.address)].account, session.ended_took_ns,
-              session.ended_sent_ns);
-    session.ended_took_ns = session.ended_sent_ns = 0;
+    for (Account* account : {&session.account, &server->addresses[static_cast<std::size_t>(session.address)].account})
+      end_frame(account, session.ended_took_ns, session.ended_sent_ns, session.ended_build_ns);
+    session.ended_took_ns = session.ended_sent_ns = session.ended_build_ns = 0;
   }
   for (Session& session : server->sessions) {
     forgive(&session.account, passed, count);
@@ -76,28 +84,33 @@ int choose_session(Server* server) {
     address->waits = address->waits || waits;
     note(&address->lanes, &session.account, waits);
   }
-  int first[2] = {-1, -1};
+  Choice choice;
   for (std::size_t i = 0; i < server->addresses.size(); ++i) {
     Address* a = &server->addresses[i];
     note(&server->lanes, &a->account, a->waits);
-    int* best = &first[a->account.heavy ? 1 : 0];
-    bool goes = *best < 0 || goes_before(a->account, server->addresses[static_cast<std::size_t>(*best)].account);
-    if (a->waits && goes) *best = static_cast<int>(i);
+    consider(&choice, static_cast<int>(i), a->account);
   }
   set_prices(server);
-  int chosen = first[choose_lane(&server->lanes, first[0] >= 0, first[1] >= 0)];
+  const int chosen = choose(&server->lanes, choice);
   if (chosen < 0) return -1;
+  choice = Choice();
+  for (std::size_t i = 0; i < server->sessions.size(); ++i)
+    if (server->sessions[i].address == chosen) consider(&choice, static_cast<int>(i), server->sessions[i].account);
+  return choose(&server->addresses[static_cast<std::size_t>(chosen)].lanes, choice);
+}
 
-  first[0] = first[1] = -1;
-  for (std::size_t i = 0; i < server->sessions.size(); ++i) {
-    const Session& session = server->sessions[i];
-    if (session.address != chosen || !session.account.waits) continue;
-    int* best = &first[session.account.heavy ? 1 : 0];
-    bool goes = *best < 0 || goes_before(session.account, server->sessions[static_cast<std::size_t>(*best)].account);
-    if (goes) *best = static_cast<int>(i);
-  }
-  Lanes* lanes = &server->addresses[static_cast<std::size_t>(chosen)].lanes;
-  return first[choose_lane(lanes, first[0] >= 0, first[1] >= 0)];
+// The worse of its lanes: among the connections of its address, and its address's among the others.
+Lane lane_of(const Server& server, const Session& session) {
+  const Address& address = server.addresses[static_cast<std::size_t>(session.address)];
+  return std::max(session.account.lane, address.account.lane);
+}
+
+// Short for those that a client of a better lane could have to wait for.
+std::uint64_t slice_ns(const Server& server, const Session& session) {
+  const Lane lane = lane_of(server, session);
+  for (const Session& other : server.sessions)
+    if (other.phase == SessionPhase::serving && lane_of(server, other) < lane) return kShortSliceNs;
+  return kSliceNs;
 }
 
 Pace pace_of(const Server& server, const Session& session, const Slice& slice) {
@@ -132,21 +145,22 @@ std::uint64_t take_coding_ns(const Server& server, Session* session) {
 
 // Codes finished rows and charges the time.
 void code_chunks(Server* server, Session* session) {
-  std::uint64_t start = now_ns(server);
+  const Times start = times_of(server);
   const std::uint64_t pixels = session->coded_pixels;
   send_chunks(session);
   CHECK_GE(session->coded_pixels, pixels);
   const std::uint64_t coded = session->coded_pixels - pixels;
   const std::uint64_t coding = take_coding_ns(*server, session);
   if (coding > 0) server->cpu_free_ns = now_ns(server) + coding;
-  std::uint64_t sending = elapsed(start, now_ns(server)) + coding;
+  const Times end = times_of(server);
+  const std::uint64_t sending = elapsed(start.now, end.now) + coding, cpu = elapsed(start.cpu, end.cpu) + coding;
   if (coded > 0) session->code_pixel_ns = static_cast<double>(sending) / static_cast<double>(coded);
-  account_for(server, session, sending, true);
+  account_for(server, session, cpu, true);
   if (has_job(*session)) {
-    session->job.took_ns += sending;
+    session->job.took_ns += cpu;
   } else {
-    session->ended_took_ns += sending;
-    session->ended_sent_ns += sending;
+    session->ended_took_ns += cpu;
+    session->ended_sent_ns += cpu;
   }
 }
 
@@ -178,7 +192,8 @@ void begin_work(Server* server, int index) {
   work->job_number = session->job_number;
   work->is_job = !(in_turn(*server) && (wants_messages(*session) || has_chunk(*session)));
   code_waiting(server, work->is_job ? session : nullptr);
-  std::uint64_t start = now_ns(server), waited_since = session->waiting_since_ns;
+  const Times begun = times_of(server);
+  const std::uint64_t start = begun.now, waited_since = session->waiting_since_ns;
   if (!work->is_job && wants_messages(*session)) {
     std::uint64_t queued = queued_in_all(session->messages);
     work->message_count = take_messages(server, session);
@@ -188,8 +203,9 @@ void begin_work(Server* server, int index) {
   } else {
     WireError code;
     const ServerOptions& o = server->options;
+    work->is_build = session->job.stage <= JobStage::own_exposure;
     JobTools tools = {o.thread_count, server->workers, o.coherence, o.helpers};
-    Status status = step_job(session, tools, kSliceNs, &work->slice, &code);
+    Status status = step_job(session, tools, slice_ns(*server, *session), &work->slice, &code);
     if (!status.ok) {
       std::uint32_t frame = session->job.request.frame;
       drop_job(session);
@@ -197,9 +213,11 @@ void begin_work(Server* server, int index) {
     }
   }
 
-  std::uint64_t now = now_ns(server), took = elapsed(start, now);
+  const Times ended = times_of(server);
+  std::uint64_t now = ended.now, took = elapsed(start, now);
   work->begin_ns = start;
   work->end_ns = now;
+  work->cpu_ns = elapsed(begun.cpu, ended.cpu);
   if (is_paced(server->options.pace)) {
     took = work_ns(*server, *session, *work, took) + take_coding_ns(*server, session);
     // Work that already waited when the CPU became free began at that moment.
@@ -208,6 +226,7 @@ void begin_work(Server* server, int index) {
     if (server->cpu_free_ns > start) work->begin_ns = server->cpu_free_ns;  // it was coding rows
     if (work->begin_ns + took > now) work->end_ns = work->begin_ns + took;
     server->cpu_free_ns = work->end_ns;
+    work->cpu_ns = elapsed(work->begin_ns, work->end_ns);
   }
   work->timer = platform::link_timer(now, work->end_ns - now);
 }
@@ -220,9 +239,11 @@ void end_work(Server* server) {
   std::uint64_t took = elapsed(work->begin_ns, work->end_ns);
   bool goes_on = work->is_job && has_job(*session) && session->job_number == work->job_number;
   bool is_job = work->is_job && session->address == work->address;
-  account_for(server, session, took, is_job);
-  if (is_job) (goes_on ? session->job.took_ns : session->ended_took_ns) += took;  // of an abandoned frame: wasted
+  account_for(server, session, work->cpu_ns, is_job);
+  if (is_job)
+    (goes_on ? session->job.took_ns : session->ended_took_ns) += work->cpu_ns;  // of an abandoned frame: wasted
   if (!goes_on) return;
+  if (work->is_build) session->job.build_ns += work->cpu_ns;
   if (work->slice.is_preparation) session->job.prepare_ns = took;
   if (work->slice.pixel_count > 0) end_slice(session, work->slice, took);
   session->waiting_since_ns = work->end_ns;
@@ -243,7 +264,7 @@ void account_for(Server* server, Session* session, std::uint64_t took, bool is_j
     if (is_job)
       account->job_ns += took;
     else
-      owe(account, took);
+      owe_messages(account, took);
   }
 }
 

@@ -130,4 +130,24 @@ std::unique_ptr<GeneratedScene> room_with_lamp(float gap, bool two_sided) {
   return s;
 }
 
+std::unique_ptr<GeneratedScene> divided_room(float at, bool dark_side) {
+  auto s = std::make_unique<GeneratedScene>();
+  Material m;
+  m.diffuse = {.7f, .7f, .7f}, m.double_sided = 0;
+  const std::uint32_t white = add_material(s.get(), m);
+  m.double_sided = 1;
+  const std::uint32_t plate = add_material(s.get(), m);
+  m.emission = {10, 10, 10}, m.double_sided = 0;
+  const std::uint32_t lamp = add_material(s.get(), m);
+  add_walls(s.get(), {4, 2, 2}, {white, white, white, white, white, white});
+  add_quad(s.get(), {at, 0, 0}, {at, 2, 0}, {at, 2, 2}, {at, 0, 2}, plate);
+  add_quad(s.get(), {.5f, 1.9f, .8f}, {1, 1.9f, .8f}, {1, 1.9f, 1.2f}, {.5f, 1.9f, 1.2f}, lamp);
+  if (dark_side)
+    aim(s.get(), {3.9f, 1.1f, 1}, {at, 1, 1}, 80);
+  else
+    aim(s.get(), {.1f, 1.1f, 1}, {at, 1, 1}, 80);
+  s->bind();
+  return s;
+}
+
 }  // namespace pocketray

@@ -35,8 +35,9 @@ std::vector<MattePoint> matte_points(const FrameData& frame) {
     Surface& s = points[i].surface;
     frame.first_surface(frame, ray, hit, &s);
     const Material& m = *s.material;
-    points[i].is_matte = !is_zero(s.diffuse) && is_zero(m.specular) && is_zero(m.mirror) && is_zero(m.transmission) &&
-                         is_zero(m.emission) && !m.unlit && m.alpha_mode == AlphaMode::opaque && !is_culled(m, s.front);
+    points[i].is_matte = !is_zero(s.diffuse) && (is_zero(m.specular) || reflects_surroundings(m)) &&
+                         is_zero(m.mirror) && is_zero(m.transmission) && is_zero(m.emission) && !m.unlit &&
+                         m.alpha_mode == AlphaMode::opaque && !is_culled(m, s.front);
   }
   return points;
 }

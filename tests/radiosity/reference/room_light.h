@@ -41,6 +41,8 @@ RoomLight instant_light(const Scene& scene, Settings settings, std::uint32_t lig
 std::unique_ptr<GeneratedScene> random_room(std::uint64_t seed);
 // A room with a lamp at a share of its height below the ceiling (HARDCASES row 71).
 std::unique_ptr<GeneratedScene> room_with_lamp(float gap, bool two_sided);
+// A room that a plate divides, with a lamp on one side, seen from either.
+std::unique_ptr<GeneratedScene> divided_room(float at, bool dark_side);
 
 Settings room_settings(std::uint32_t width, std::uint32_t height);
 
