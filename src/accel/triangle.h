@@ -168,8 +168,9 @@ inline bool cross_triangle(const ShearedRay& ray, const Vec3& a, const Vec3& b, 
   }
   EdgeValues<double> w = exact_weights(ray, a, b, c);
   if (signs_differ(w) || all_zero(w)) {
-    // A ray along the plane it begins on would hit by the rounding of its direction.
-    if (is_on_plane(from_origin(ray, a), from_origin(ray, b), from_origin(ray, c))) return false;
+    // A ray along the plane it begins on would hit about its origin by the rounding of its direction.
+    if (begins_on_plane(ray.direction[ray.kz], from_origin(ray, a), from_origin(ray, b), from_origin(ray, c)))
+      return false;
     w = edge_values<double>(ax, ay, bx, by, cx, cy);
   }
   *crossing = place_crossing(ray, a, b, c, w);

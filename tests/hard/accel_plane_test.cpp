@@ -61,18 +61,30 @@ Vec3 random_direction(Rng* rng, const OnPlane& p, bool along) {
   return p.along * between(rng, -1.0f, 1.0f) + p.across * between(rng, -1.0f, 1.0f);
 }
 
+// Along the direction's dominant axis, by which hits are located.
+bool is_all_ahead(const Mesh& mesh, const Ray& ray) {
+  const Vec3& d = ray.direction;
+  int axis = 0;
+  for (int c = 1; c < 3; ++c)
+    if (std::fabs(d[c]) >= std::fabs(d[axis])) axis = c;
+  for (const Vec3& v : mesh.positions)
+    if (!((v[axis] - ray.origin[axis]) * (d[axis] < 0 ? -1.0f : 1.0f) > 0)) return false;
+  return true;
+}
+
 }  // namespace
 
 // Goal: a ray that begins exactly on a triangle's plane does not hit it, on no accelerator. Method: triangles and
 // points of one lattice plane, so that they are coplanar exactly, at sizes of 2^-40 to 2^40; packets of rays from
-// there, also along the plane; as closest hits, and as shadow rays but for those along the plane.
+// there, also along the plane; as closest hits and as shadow rays. A ray along the plane may meet a triangle ahead of
+// it edge-on, by the rounding of its direction, but never one about its origin; both kinds of rays must agree on that.
 TEST_CASE("hard_66_ray_from_a_triangles_plane_does_not_hit_it") {
   std::uint64_t rays = 0, wrong = 0;
   std::vector<Variant> variants = all_variants();
   variants.push_back({&kBruteAccel, best_isa(), true});
   for (const Variant& variant : variants) {
     Rng rng = make_rng(661);
-    int hits = 0, blocked = 0, count = 0;
+    int hits = 0, blocked = 0, differing = 0, count = 0;
     for (int i = 0; i < gate_share(400, 20000); ++i) {
       const float scale = std::ldexp(1.0f, i % 81 - 40);
       const OnPlane p = random_on_plane(&rng, scale);
@@ -83,14 +95,18 @@ TEST_CASE("hard_66_ray_from_a_triangles_plane_does_not_hit_it") {
       for (Ray& ray : group) ray = {p.eye, random_direction(&rng, p, along), kInfinity};
       answer(variant, *world, group, kGroupMax, nullptr, found);
       for (int k = 0; k < kGroupMax; ++k, ++count) {
-        hits += found[k].triangle != kNoTriangle;
-        if (!along) blocked += variant.accel->occluded(world->accel, group[k], nullptr, nullptr);
+        const bool is_hit = found[k].triangle != kNoTriangle,
+                   is_blocked = variant.accel->occluded(world->accel, group[k], nullptr, nullptr);
+        differing += is_hit != is_blocked;
+        if (along && is_all_ahead(p.mesh, group[k])) continue;
+        hits += is_hit, blocked += is_blocked;
       }
     }
     INFO(name_of(variant));
     CHECK(hits == 0);
     CHECK(blocked == 0);
-    rays += static_cast<std::uint64_t>(count), wrong += static_cast<std::uint64_t>(hits + blocked);
+    CHECK(differing == 0);
+    rays += static_cast<std::uint64_t>(count), wrong += static_cast<std::uint64_t>(hits + blocked + differing);
   }
   count_hard(rays, wrong, "no hit");
 }

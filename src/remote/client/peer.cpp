@@ -328,7 +328,9 @@ void advance_server(Client* client, RemoteServer* server) {
   if (is_light_overdue(client, server)) return lose_server(client, server, "it did not send its light in time");
   if (!is_awaited(*client, *server)) {
     server->timer = platform::link_timer(now, silence_limit_ns(*client, *server));
-    if (server->phase >= ServerPhase::probing && now >= server->ping_due_ns) {
+    // Where servers send light, one may wait for its first rows for long.
+    const bool is_spare = server->phase >= ServerPhase::probing && client->options.light.split != SplitKind::rows;
+    if ((server->phase == ServerPhase::ready || is_spare) && now >= server->ping_due_ns) {
       server->ping_due_ns = now + kIdlePingNs;
       send_ping(client, server, 0);
     }
