@@ -98,6 +98,7 @@ std::uint32_t add_node(Builder* builder) {
 
 void set_leaf(Builder* builder, BvhNode* node, int lane, const std::uint32_t* ids, std::uint32_t count) {
   CHECK_LT(builder->leaf_count, builder->leaf_max);
+  CHECK(lane >= 0 && lane < 4);
   node->child[lane] = leaf_reference(builder->leaf_count, count);
   std::uint8_t* leaf = builder->leaves + std::size_t(builder->kind.bytes) * builder->leaf_count++;
   set_child_box(node, lane, builder->kind.fill(builder->accel->positions, builder->accel->triangles, ids, count, leaf));

@@ -113,6 +113,7 @@ struct Crossing {
 // A ray that begins on a triangle's plane does not hit it: t would be the rounding of 0. Close hits, compared with the
 // largest depth of a vertex, are asked whether that is so. Rounding of t grows towards grazing rays, but stays below.
 constexpr float kCloseHit = 0x1p-16f;
+static_assert(kCloseHit > 0x1p-20f, "beyond the rounding of t and of depths");
 inline bool is_close_hit(float t, float direction_z, double az, double bz, double cz) {
   if (!(t > 0)) return false;
   const float a = static_cast<float>(std::fabs(az)), b = static_cast<float>(std::fabs(bz)),

@@ -20,6 +20,7 @@ struct NoteWriter {
     int written = std::vsnprintf(text + used, kUnusedNoteBytes - used, format, arguments);
     va_end(arguments);
     CHECK(written >= 0);
+    CHECK_LT(used, static_cast<std::size_t>(kUnusedNoteBytes));
     used += static_cast<std::size_t>(written);
     if (used >= kUnusedNoteBytes) used = kUnusedNoteBytes - 1;
   }
@@ -32,6 +33,7 @@ EffectMask readers_of(const SettingRow& row) { return row.seen_with == kAlways ?
 bool interpolates(const SettingRow& row) { return row.seen_with == kAlways; }
 
 void add_unused(const SettingRow& row, const EffectPlan& plan, NoteWriter note) {
+  CHECK(readers_of(row) != 0);
   note.add("--%s has no effect: ", row.name);
   const char* separator = "";
   for (const EffectRow& effect : kEffectList) {
@@ -46,6 +48,7 @@ void add_unused(const SettingRow& row, const EffectPlan& plan, NoteWriter note) 
 }
 
 void add_left_out(const SettingRow& row, EffectMask left_out, NoteWriter note) {
+  CHECK(left_out != 0);
   note.add("--%s leaves out: ", row.name);
   const char* separator = "";
   for (const EffectRow& effect : kEffectList) {
@@ -67,6 +70,7 @@ UnusedSettings find_unused_settings(const Scene& scene, const Settings& asked) {
     row.field.set(&without, standard);
     const EffectMask mask_without = plan_effects(scene, without).mask;
     const EffectMask left_out = mask_without & ~plan.mask & ~row.effects;
+    CHECK_LT(unused.count, kSettingCount);
     NoteWriter note = {unused.notes[unused.count]};
     if (mask_without == plan.mask && !(readers_of(row) & plan.mask)) {
       add_unused(row, plan, note);

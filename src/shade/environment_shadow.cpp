@@ -29,6 +29,7 @@ struct DistantSource {
 
 DistantSource source_of(const FrameData& frame) {
   CHECK(frame.environment_lights != nullptr);
+  CHECK_LE(frame.environment_lights->count, static_cast<std::uint32_t>(kEnvironmentLightMax));
   return {*frame.environment_lights, frame.environment_lights->count};
 }
 
