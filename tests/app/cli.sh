@@ -43,6 +43,11 @@ check() {
   shift
   if "$@"; then passed=$((passed + 1)); else echo "FAILED $name: $*" && failed=$((failed + 1)); fi
 }
+# Waits until a command succeeds, the process ends or 60 s have passed; the checks that follow tell which.
+wait_for() {  # PROCESS COMMAND...
+  local end=$((SECONDS + 60))
+  until "${@:2}" || ! kill -0 "$1" 2>/dev/null || [ $SECONDS -ge $end ]; do sleep 0.05; done
+}
 small=(--size 32x24 --threads 2)
 
 finish() {  # ends the test

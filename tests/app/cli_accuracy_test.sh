@@ -11,7 +11,7 @@ if "${run[@]}" --help | grep -q '^ *accuracy '; then
   expect accuracy_folder 1 'no/such' accuracy cube "${tiny[@]}" -o no/such/folder
   "${run[@]}" accuracy cube "${tiny[@]}" -o sweep --rounds 1000 >/dev/null 2>interrupted.err &
   sweeping=$!
-  until grep -qs '"rounds": [1-9]' sweep/accuracy.state || ! kill -0 $sweeping; do sleep 0.05; done
+  wait_for $sweeping grep -qs '"rounds": [1-9]' sweep/accuracy.state
   kill -INT $sweeping
   wait $sweeping
   check accuracy_is_interrupted test $? -eq 3
@@ -46,7 +46,7 @@ if "${run[@]}" --help | grep -q '^ *accuracy '; then
       printf '#!/bin/sh\necho $$ >fake.id.part && mv fake.id.part fake.id\nexec sleep 60\n' >fake/valgrind
       "${run[@]}" accuracy cube "${tiny[@]}" -o other --rounds 1 >/dev/null 2>&1 &
       sweeping=$!
-      until [ -s fake.id ] || ! kill -0 $sweeping 2>/dev/null; do sleep 0.05; done
+      wait_for $sweeping test -s fake.id
       kill -INT $sweeping
       wait $sweeping
       check accuracy_is_interrupted_when_counting test $? -eq 3

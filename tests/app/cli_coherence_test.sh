@@ -43,7 +43,7 @@ assert report["papers_way"] is None and len(report["frames"]) == 2'
   "${run[@]}" coherence-report seesaw --size 160x120 --threads 1 --frames 0:99999 -o kept >kept.txt 2>interrupted.err &
   reporting=$!
   # The signal is caught once the first batch is under way at the latest.
-  until grep -qsE '^SigCgt:.*[2367abef]$' /proc/$reporting/status || ! kill -0 $reporting; do sleep 0.05; done
+  wait_for $reporting grep -qsE '^SigCgt:.*[2367abef]$' /proc/$reporting/status
   sleep 3
   kill -INT $reporting
   wait $reporting

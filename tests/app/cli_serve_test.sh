@@ -21,7 +21,7 @@ if [ $# -eq 0 ] && "${run[@]}" --help | grep -q '^ *serve '; then  # not under a
   mkdir scenes && cp d.pray scenes/ && head -c 5000 c.pray >scenes/cut.pray
   "${run[@]}" serve --listen 127.0.0.1:0 --scenes scenes --threads 2 >serve.out 2>serve.err &
   server=$!
-  until grep -q '^listening' serve.out || ! kill -0 $server; do sleep 0.1; done
+  wait_for $server grep -q '^listening' serve.out
   check serve_lists_its_scenes grep -q '^ *d.pray ' serve.out
   check serve_leaves_out_what_is_broken test "$(grep -c '^pocketray: cut.pray is skipped: ' serve.err)" = 1
   address=$(sed -n 's/^listening on \([0-9.:]*\): .*/\1/p' serve.out)
@@ -75,7 +75,7 @@ if [ $# -eq 0 ] && "${run[@]}" --help | grep -q '^ *serve '; then  # not under a
 
   "${run[@]}" serve --listen 127.0.0.1:0 --threads 1 >sharing.out 2>sharing.err &
   server=$!
-  until grep -q '^listening' sharing.out || ! kill -0 $server; do sleep 0.1; done
+  wait_for $server grep -q '^listening' sharing.out
   address=$(sed -n 's/^listening on \([0-9.:]*\): .*/\1/p' sharing.out)
 
   # Goal: pictures with and without a server are equal, byte for byte, in every format and split. Method: sequences, so
@@ -143,7 +143,7 @@ if [ $# -eq 0 ] && "${run[@]}" --help | grep -q '^ *serve '; then  # not under a
   many=(render seesaw --size 96x72 --frames 0:24 --emulate tablet)
   "${run[@]}" "${many[@]}" -o lost.ppm --server "$address" >lost.out 2>lost.err &
   device=$!
-  until [ -s lost-0004.ppm ] || ! kill -0 $device; do sleep 0.05; done
+  wait_for $device test -s lost-0004.ppm
   kill -KILL $server
   wait $server 2>/dev/null
   wait $device
@@ -183,8 +183,8 @@ assert [row["clients"] for row in f["one_server_many_clients"]] == [1, 2, 3, 4, 
     "${run[@]}" split-report cube --device-ns 5000 --server-ns 500 --frames 100 >/dev/null 2>interrupted.err &
     reporting=$!
     # The process is no longer the shell, and SIGINT, signal 2, is caught: the program is running.
-    until { grep -q split-report /proc/$reporting/cmdline && grep -qE '^SigCgt:.*[2367abef]$' /proc/$reporting/status; } ||
-      ! kill -0 $reporting; do sleep 0.05; done
+    is_running() { grep -q split-report /proc/$reporting/cmdline && grep -qE '^SigCgt:.*[2367abef]$' /proc/$reporting/status; }
+    wait_for $reporting is_running
     sleep 0.2
     kill -INT $reporting
     wait $reporting

@@ -46,7 +46,7 @@ expect serve_to_others_offers_a_key 1 'keygen.*--insecure-lan' serve --listen 0.
 serve() {  # NAME OPTIONS... : starts a server; sets `server`, `address` and `port`
   "${run[@]}" serve --threads 1 --memory 16M "${@:2}" >"$1.out" 2>"$1.err" &
   server=$!
-  until grep -q '^listening' "$1.out" || ! kill -0 $server; do sleep 0.1; done
+  wait_for $server grep -q '^listening' "$1.out"
   port=$(sed -n 's/^listening on [0-9.]*:\([0-9]*\): .*/\1/p' "$1.out") address=127.0.0.1:$port
 }
 stop() {  # NAME : ends it
@@ -138,7 +138,7 @@ fi
 # Goal: a server that is killed costs no picture; without its key it does not know the device. Method: as cli_serve does.
 "${run[@]}" render seesaw --size 96x72 --frames 0:24 --emulate tablet -o lost.ppm "${with[@]}" >lost.out 2>lost.err &
 device=$!
-until [ -s lost-0004.ppm ] || ! kill -0 $device; do sleep 0.05; done
+wait_for $device test -s lost-0004.ppm
 kill -KILL $server
 wait $server 2>/dev/null
 wait $device

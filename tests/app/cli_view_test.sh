@@ -41,8 +41,8 @@ check view_log_has_the_failure grep -q 'no-such-scene is neither a file' view.lo
 check view_log_keeps_earlier_runs test "$(grep -c 'is neither a file' view.log)" -eq 2
 expect view_log_nowhere 1 'no/such/log cannot be written' view cube "${small[@]}" --screen null --frames 1 --log no/such/log
 
-# Goal: the viewer survives a scene being rewritten and reports each state. Method: touch the file until it is reloaded;
-# truncate it; replace it; remove and restore it.
+# Goal: the viewer survives a scene being rewritten and reports each state. Method: touch the file until it is reloaded, at
+# intervals that leave it at rest for the two looks a reload takes; truncate it; replace it; remove and restore it.
 if [ $# -eq 0 ]; then
   "${run[@]}" bake cube -o live.pray >/dev/null
   "${run[@]}" bake seesaw -o other.pray >/dev/null
@@ -51,20 +51,28 @@ if [ $# -eq 0 ]; then
   "${run[@]}" view live.pray "${small[@]}" --screen null >view.out 2>view.err &
   viewing=$!
   told() { grep -c "$1" view.err; }
-  until [ "$(told 'live.pray reloaded')" -gt 0 ] || ! kill -0 $viewing; do touch live.pray && sleep 0.2; done
+  is_reloaded() { [ "$(told 'live.pray reloaded')" -gt "$1" ]; }
+  touch_and_wait() {
+    touch live.pray
+    local end=$((SECONDS + 3))
+    until is_reloaded 0 || [ $SECONDS -ge $end ]; do sleep 0.05; done
+    is_reloaded 0
+  }
+  wait_for $viewing touch_and_wait
+  check view_reloads is_reloaded 0
   before=$(told 'reloaded')
   head -c 3000 good.pray >live.pray
   # A read interrupted by the truncation is reported first and retried.
-  until grep -q 'live.pray: .*; keeping the last picture' view.err || ! kill -0 $viewing; do sleep 0.05; done
+  wait_for $viewing grep -q 'live.pray: .*; keeping the last picture' view.err
   check view_tells_what_is_broken grep -q 'live.pray: .*; keeping the last picture until the file changes' view.err
   check view_stays kill -0 $viewing
   : >live.pray
-  until [ "$(told 'live.pray is empty')" -gt 0 ] || ! kill -0 $viewing; do sleep 0.05; done
+  wait_for $viewing grep -q 'live.pray is empty' view.err
   check view_tells_the_next_fault grep -q 'live.pray is empty' view.err
   rm live.pray
   cp other.pray live.pray
-  until [ "$(told 'reloaded')" -gt "$before" ] || ! kill -0 $viewing; do sleep 0.05; done
-  check view_loads_it_after_all test "$(told 'reloaded')" -gt "$before"
+  wait_for $viewing is_reloaded "$before"
+  check view_loads_it_after_all is_reloaded "$before"
   kill -INT $viewing
   wait $viewing
   check view_is_left test $? -eq 3
