@@ -97,7 +97,7 @@ void light_scene(Renderer* renderer) {
     CHECK_LE(renderer->frame.lights.count, renderer->light_points.count);
     if (has(renderer->effects.mask, Effect::area_light)) {
       place_point_groups(renderer->point_groups, renderer->point_order, renderer->point_place, &renderer->frame);
-      place_light_polygons(renderer->light_polygons, &renderer->frame);
+      place_light_polygons(opened_materials(*renderer), renderer->light_polygons, &renderer->frame);
     }
     if (has(renderer->effects.mask, Effect::source_selection))
       place_light_tree(renderer->light_nodes, renderer->light_order, &renderer->frame);

@@ -32,13 +32,12 @@ double triangle_area(const FrameData& frame, std::uint32_t triangle) {
   return std::ldexp(0.5 * static_cast<double>(length(cross(e1, e2))), 2 * exponent);
 }
 
-// The emitter that starts at a triangle. The halves of a parallelogram may begin at any of their vertices.
-Emitter emitter_at(const FrameData& frame, std::uint32_t triangle) {
+// The lamp's emitter that starts at a triangle. The halves of a parallelogram may begin at any of their vertices.
+Emitter emitter_at(const FrameData& frame, const Lamp& lamp, std::uint32_t triangle) {
   const Scene& scene = *frame.scene;
   Emitter e = {triangle, false, triangle_area(frame, triangle), {0, 0}};
-  if (triangle + 1 >= scene.triangles.count) return e;
+  if (!is_part_of(scene, lamp, triangle + 1)) return e;
   const Triangle &t = scene.triangles[triangle], &next = scene.triangles[triangle + 1];
-  if (next.material() != t.material()) return e;
   auto corner = [&](const Triangle& of, std::uint32_t i) -> const Vec3& { return frame.positions[of.vertex(i % 3)]; };
   for (std::uint32_t i = 0; i < 3; ++i) {
     const Vec3 &a = corner(t, i), &b = corner(t, i + 1), &c = corner(t, i + 2);
@@ -55,13 +54,13 @@ Emitter emitter_at(const FrameData& frame, std::uint32_t triangle) {
   return e;
 }
 
-// Visits the emitters of one material in order.
+// Visits the emitters of a lamp in order.
 template <class Visit>
-void each_emitter(const FrameData& frame, std::uint32_t material, Visit visit) {
+void each_emitter(const FrameData& frame, const Lamp& lamp, Visit visit) {
   const Scene& scene = *frame.scene;
-  for (std::uint32_t i = 0; i < scene.triangles.count; ++i) {
-    if (scene.triangles[i].material() != material) continue;
-    Emitter e = emitter_at(frame, i);
+  for (std::uint32_t i = lamp.begin; i < lamp.end; ++i) {
+    if (!is_part_of(scene, lamp, i)) continue;
+    Emitter e = emitter_at(frame, lamp, i);
     if (e.area > 0) visit(e);
     if (e.parallelogram) ++i;
   }
@@ -163,7 +162,7 @@ struct Slice {
 };
 
 template <class Visit>
-void each_slice(const FrameData& frame, std::uint32_t material, double area_total, std::uint32_t n, Visit visit) {
+void each_slice(const FrameData& frame, const Lamp& lamp, double area_total, std::uint32_t n, Visit visit) {
   CHECK(area_total > 0);
   CHECK_GE(n, 1u);
   // A border that misses one between shares by no more than the sums' rounding is taken as that border.
@@ -172,7 +171,7 @@ void each_slice(const FrameData& frame, std::uint32_t material, double area_tota
     return std::fabs(shares - nearest) < 1e-6 ? nearest : shares;
   };
   double area = 0;
-  each_emitter(frame, material, [&](const Emitter& e) {
+  each_emitter(frame, lamp, [&](const Emitter& e) {
     const double begin = in_shares(area), end = in_shares(area += e.area);
     for (double from = begin, to; from < end; from = to) {
       const double share = std::floor(from);
@@ -204,6 +203,13 @@ void approach(const FrameData& frame, const Emitter& e, NearestPoint* nearest) {
   }
 }
 
+// Moves a point of a bent lamp off its triangle's edges, where rounding could let a neighbour hide it.
+void keep_off_edges(float* u, float* v) {
+  constexpr float kLeast = 0x1p-6f;  // chosen: of the triangle's height; more than rounding, less than is seen
+  if (std::min(std::min(*u, *v), 1 - *u - *v) >= kLeast) return;
+  *u += (1 / 3.0f - *u) * (3 * kLeast), *v += (1 / 3.0f - *v) * (3 * kLeast);
+}
+
 // Points of the shares that a slice covers whole.
 void place_whole_shares(const FrameData& frame, const Emitter& e, const Slice& slice, double area, LightPoint* points) {
   CHECK(slice.whole);
@@ -220,18 +226,23 @@ void place_whole_shares(const FrameData& frame, const Emitter& e, const Slice& s
 
 }  // namespace
 
+double lamp_area(const FrameData& frame, const Lamp& lamp) {
+  double total = 0;
+  each_emitter(frame, lamp, [&](const Emitter& e) { total += e.area; });
+  return total;
+}
+
 // A share that several emitters make up has the point of its surface nearest to its centroid. Where the centroid lies
 // on another share, as it may in a flat lamp, the point is there: flat lamps keep their centre.
-std::uint32_t place_area_light(const FrameData& frame, std::uint32_t material, LightPoint* points) {
+std::uint32_t place_area_light(const FrameData& frame, const Lamp& lamp, LightPoint* points) {
   const std::uint32_t n = frame.settings.points_per_area_light;
   CHECK(n >= 1 && n <= kPointsPerAreaLightMax);
-  double total = 0;
-  each_emitter(frame, material, [&](const Emitter& e) { total += e.area; });
+  const double total = lamp_area(frame, lamp);
   if (!(total > 0)) return 0;
   const double area = total / n;
   // 1. The centroids of shares in parts.
   for (std::uint32_t i = 0; i < n; ++i) points[i].position = {0, 0, 0};
-  each_slice(frame, material, total, n, [&](const Emitter& e, const Slice& slice) {
+  each_slice(frame, lamp, total, n, [&](const Emitter& e, const Slice& slice) {
     if (slice.whole) return place_whole_shares(frame, e, slice, area, points);
     std::uint32_t triangle;
     float u, v;
@@ -244,13 +255,14 @@ std::uint32_t place_area_light(const FrameData& frame, std::uint32_t material, L
   auto settle = [&](std::uint32_t share) {
     if (nearest.square > there) {
       NearestPoint other = nearest;
-      each_emitter(frame, material, [&](const Emitter& e) { approach(frame, e, &other); });
+      each_emitter(frame, lamp, [&](const Emitter& e) { approach(frame, e, &other); });
       if (other.square <= there) nearest = other;
     }
+    if (nearest.square > there) keep_off_edges(&nearest.u, &nearest.v);
     points[share] = point_on(frame, nearest.triangle, nearest.u, nearest.v, area);
   };
   std::uint32_t share = kNone;
-  each_slice(frame, material, total, n, [&](const Emitter& e, const Slice& slice) {
+  each_slice(frame, lamp, total, n, [&](const Emitter& e, const Slice& slice) {
     if (slice.whole) return;
     if (slice.share != share) {
       if (share != kNone) settle(share);

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "base/check.h"
+#include "plan/area_light.h"
 #include "shade/lights.h"
 
 namespace pocketray {
@@ -37,11 +38,12 @@ void add_edge(const Vec3& from, const Vec3& to, Outline* outline) {
   outline->edges[outline->count++] = {from, to};
 }
 
-// The edges of a material's triangles without those that two share. False if there are too many.
-bool find_outline(const FrameData& frame, std::uint32_t material, Outline* outline) {
+// The edges of a lamp's triangles without those that two share. False if there are too many.
+bool find_outline(const FrameData& frame, const Lamp& lamp, Outline* outline) {
   std::uint32_t triangles = 0;
-  for (const Triangle& t : frame.scene->triangles) {
-    if (t.material() != material) continue;
+  for (std::uint32_t triangle = lamp.begin; triangle < lamp.end; ++triangle) {
+    if (!is_part_of(*frame.scene, lamp, triangle)) continue;
+    const Triangle& t = frame.scene->triangles[triangle];
     const Vec3 &a = frame.positions[t.vertex(0)], &b = frame.positions[t.vertex(1)], &c = frame.positions[t.vertex(2)];
     const Vec3d area = area_vector_of(a, b, c);
     if (is_zero(area)) continue;
@@ -72,9 +74,10 @@ double height_over(const LightPolygon& polygon, const Vec3& point) {
   return dot(to_double(point) - to_double(polygon.corners[0]), to_double(polygon.normal));
 }
 
-bool is_flat(const FrameData& frame, std::uint32_t material, const LightPolygon& polygon, double size) {
-  for (const Triangle& t : frame.scene->triangles) {
-    if (t.material() != material) continue;
+bool is_flat(const FrameData& frame, const Lamp& lamp, const LightPolygon& polygon, double size) {
+  for (std::uint32_t triangle = lamp.begin; triangle < lamp.end; ++triangle) {
+    if (!is_part_of(*frame.scene, lamp, triangle)) continue;
+    const Triangle& t = frame.scene->triangles[triangle];
     const Vec3 &a = frame.positions[t.vertex(0)], &b = frame.positions[t.vertex(1)], &c = frame.positions[t.vertex(2)];
     const Vec3d area = area_vector_of(a, b, c);
     if (is_zero(area)) continue;
@@ -100,19 +103,19 @@ double margin_of(const LightPolygon& polygon, const LightPoint* points, std::uin
   return 0x1p-9 + off + 16 * kEpsilon * (1 + largest / size);
 }
 
-bool make_polygon(const FrameData& frame, std::uint32_t material, const LightPoint* points, std::uint32_t count,
+bool make_polygon(const FrameData& frame, const Lamp& lamp, const LightPoint* points, std::uint32_t count,
                   LightPolygon* polygon) {
-  const Material& m = frame.scene->materials[material];
+  const Material& m = frame.scene->materials[lamp.material];
   if (m.emission_texture.texture != kNone && frame.scene->uvs.count) return false;
   Outline outline;
-  if (!find_outline(frame, material, &outline) || !join(&outline, polygon)) return false;
+  if (!find_outline(frame, lamp, &outline) || !join(&outline, polygon)) return false;
   double size = 0;
   for (std::uint32_t i = 1; i < polygon->corner_count; ++i)
     size = std::max(size, length(to_double(polygon->corners[i]) - to_double(polygon->corners[0])));
   const double area = length(outline.area_vector);
   if (!(size > 0x1p-100 && area > 0)) return false;
   polygon->normal = to_float(outline.area_vector / area);
-  if (!is_flat(frame, material, *polygon, size)) return false;
+  if (!is_flat(frame, lamp, *polygon, size)) return false;
   int exponent;
   std::frexp(size, &exponent);
   polygon->scale = static_cast<float>(std::ldexp(1.0, -exponent));
@@ -128,11 +131,11 @@ bool make_polygon(const FrameData& frame, std::uint32_t material, const LightPoi
 std::uint32_t light_polygon_count(const Scene& scene, EffectMask mask) {
   if (!has(mask, Effect::area_light)) return 0;
   std::uint32_t count = 0;
-  for (const Material& m : scene.materials) count += !is_zero(m.emission);
+  each_lamp(scene, scene.materials, [&](const Lamp&) { ++count; });
   return count;
 }
 
-void place_light_polygons(Array<LightPolygon> polygons, FrameData* frame) {
+void place_light_polygons(Array<const Material> lamps, Array<LightPolygon> polygons, FrameData* frame) {
   CHECK(frame != nullptr);
   frame->light_polygons = {};
   if (frame->settings.area_irradiance == AreaIrradiance::points || frame->light_run_count == 0 ||
@@ -145,14 +148,16 @@ void place_light_polygons(Array<LightPolygon> polygons, FrameData* frame) {
   const std::uint32_t count = (run.end - run.begin) / n;
   CHECK_LE(count, polygons.count);
   bool any = false;
-  for (std::uint32_t i = 0; i < count; ++i) {
-    const LightPoint* points = &frame->lights[run.begin + i * n];
-    polygons[i] = {};
-    if (make_polygon(*frame, points->material, points, n, &polygons[i]))
-      any = true;
-    else
-      polygons[i] = {};
-  }
+  std::uint32_t i = 0;
+  each_lamp(*frame->scene, lamps, [&](const Lamp& lamp) {
+    if (!(lamp_area(*frame, lamp) > 0)) return;  // it has no points
+    CHECK_LT(i, count);
+    LightPolygon polygon = {};
+    const bool is_polygon = make_polygon(*frame, lamp, &frame->lights[run.begin + i * n], n, &polygon);
+    polygons[i++] = is_polygon ? polygon : LightPolygon{};
+    any = any || is_polygon;
+  });
+  CHECK_EQ(i, count);
   if (!any) return;
   run.polygons = polygons.data;
   frame->light_polygons = {polygons.data, count};

@@ -11,8 +11,6 @@ namespace {
 constexpr Effect kKinds[] = {Effect::point_light, Effect::spot_light, Effect::directional_light, Effect::area_light};
 static_assert(sizeof kKinds / sizeof kKinds[0] == sizeof FrameData::light_runs / sizeof(LightRun), "a run for each");
 
-bool is_emissive(const Material& m) { return !is_zero(m.emission); }
-
 Effect effect_of(LightKind kind) {
   return kind == LightKind::point  ? Effect::point_light
          : kind == LightKind::spot ? Effect::spot_light
@@ -38,8 +36,7 @@ Status light_point_count(const Scene& scene, const Settings& settings, EffectMas
   std::uint64_t n = 0;
   for (const Light& light : scene.lights) n += has(mask, effect_of(light.kind));
   if (has(mask, Effect::area_light))
-    for (const Material& m : scene.materials)
-      if (is_emissive(m)) n += settings.points_per_area_light;
+    each_lamp(scene, scene.materials, [&](const Lamp&) { n += settings.points_per_area_light; });
   if (n > kPointLightCountMax)
     return failure("the scene's lights need %llu light points, at most %u are supported: use fewer per area light",
                    static_cast<unsigned long long>(n), kPointLightCountMax);
@@ -56,8 +53,8 @@ void place_lights(Array<const Light> lights, Array<const Material> lamps, Array<
     if (!has(frame->mask, kind)) continue;
     std::uint32_t begin = count;
     if (kind == Effect::area_light) {
-      for (std::uint32_t m = 0; m < lamps.count; ++m)
-        if (is_emissive(lamps[m])) count += place_area_light(*frame, m, points.data + count);
+      each_lamp(*frame->scene, lamps,
+                [&](const Lamp& lamp) { count += place_area_light(*frame, lamp, points.data + count); });
     } else {
       for (const Light& light : lights)
         if (effect_of(light.kind) == kind) points[count++] = to_point(light);

@@ -101,7 +101,7 @@ float irradiance_within(const LightReach& reach, const Box& box, float height) {
 float triangle_irradiance(const void* context, std::uint32_t triangle) {
   const LightReach& reach = *static_cast<const LightReach*>(context);
   const Triangle& t = reach.frame->scene->triangles[triangle];
-  if (t.material() == reach.light->material) return 0;
+  if (is_beside(*reach.frame, *reach.light, triangle)) return 0;
   Box box = empty_box();
   float height = 0;
   for (std::uint32_t v : t.vertices()) {

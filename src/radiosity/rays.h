@@ -8,7 +8,7 @@ namespace pocketray {
 // Rays through what lets light through, from points lifted off their surfaces.
 struct SceneRays {
   const FrameData& frame;
-  ShadowContext context = {&frame, kNone};
+  ShadowContext context = {&frame, nullptr};
   HitFilter opaque = {frame.accept_opaque, &context};
   const HitFilter* filter() const { return frame.filter_every_shadow ? &opaque : nullptr; }
 };

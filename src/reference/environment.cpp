@@ -61,7 +61,7 @@ Vec3d value_in_model(const Reference& reference, const ReferenceSurface& s, cons
   value = (value + coat_value(s, to_viewer, to_light)) * s.open;
   const Vec3d diffuse = s.diffuse * (1 / kPi);
   if (!has(frame.mask, Effect::environment_shadow) || is_zero(diffuse)) return value + diffuse * s.open;
-  return value + diffuse * transmittance(reference.world, leave(frame, s, to_light, kInfinity), {kNone, kNone, true});
+  return value + diffuse * transmittance(reference.world, leave(frame, s, to_light, kInfinity), {kNone, nullptr, true});
 }
 
 Vec3d light_in_model(const Reference& reference, const ReferenceSurface& s, const Vec3d& to_viewer,
@@ -94,7 +94,7 @@ Vec3d openness_as_rendered(const Reference& reference, const ReferenceSurface& s
     if (!(cosine > 0) || !(dot(s.geometric, direction) > 0)) continue;
     const Vec3d arriving = to_double(light.irradiance) * cosine;
     open += arriving;
-    lit += arriving * transmittance(reference.world, leave(frame, s, direction, kInfinity), {kNone, kNone, true});
+    lit += arriving * transmittance(reference.world, leave(frame, s, direction, kInfinity), {kNone, nullptr, true});
   }
   for (int c = 0; c < 3; ++c) lit[c] = open[c] > 0 ? lit[c] / open[c] : 1;
   return lit;
@@ -175,7 +175,7 @@ Vec3d environment_light(const Reference& reference, const ReferenceOptions& opti
   const double weight = goes_on ? power_heuristic(density, guided_density(s, to_viewer, direction)) : 1;
   const Vec3d sum = lobe_value(s, to_viewer, direction) * map_at(*frame.scene, direction) * (cosine * weight / density);
   if (is_zero(sum)) return sum;
-  return sum * transmittance(reference.world, leave(frame, s, direction, kInfinity), {kNone, kNone, true});
+  return sum * transmittance(reference.world, leave(frame, s, direction, kInfinity), {kNone, nullptr, true});
 }
 
 Vec3d environment_light_as_rendered(const Reference& reference, const ReferenceSurface& s, const Vec3d& to_viewer,

@@ -86,8 +86,8 @@ Vec3d area_light(const Reference& reference, const ReferenceOptions& options, co
   ReferencePlace place = pick_place(frame, reference.emitters, samples->light());
   std::uint32_t triangle = place.triangle;
   bool model = options.transport == Transport::model;
-  std::uint32_t material = material_index(frame, triangle);
-  if (model && &frame.scene->materials[material] == s.material) return {0, 0, 0};  // an emitter does not light itself
+  const bool own = &material_of(frame, triangle) == s.material;
+  if (model && own && has_stored_light(frame)) return {0, 0, 0};  // it is in the stored light
   Vec3d to_light = place.point - s.point;
   double distance = length(to_light);
   if (!(distance > 0) || triangle == s.triangle) return {0, 0, 0};
@@ -103,7 +103,7 @@ Vec3d area_light(const Reference& reference, const ReferenceOptions& options, co
   Vec3d sum = lobe_value(s, to_viewer, direction) * sent * (cosine * weight / density);
   if (is_zero(sum)) return sum;
   ReferenceRay ray = leave(frame, s, direction, distance * (1 - 0x1p-40));
-  return sum * transmittance(reference.world, ray, {triangle, model ? material : kNone, !model});
+  return sum * transmittance(reference.world, ray, {triangle, nullptr, !model});
 }
 
 }  // namespace
@@ -138,6 +138,9 @@ namespace {
 
 // One light's radiance towards the viewer; false if it contributes nothing. `weight` is the irradiance times the
 // cosine.
+bool is_own(const FrameData& frame, const ReferenceSurface& s, const LightPoint& light) {
+  return light.material != kNone && &frame.scene->materials[light.material] == s.material;
+}
 struct ReferenceLight {
   Vec3d direction, sent;  // unblocked
   double distance, weight;
@@ -148,6 +151,9 @@ bool find_light(const FrameData& frame, const LightRun& run, std::uint32_t i, co
   if (!reach(frame.lights[i], run.sample, s.point, &found->direction, &found->distance, &irradiance)) return false;
   const double cosine = dot(s.normal, found->direction);
   if (!(cosine > 0)) return false;
+  if (is_own(frame, s, frame.lights[i]))
+    for (int c = 0; c < 3; ++c)
+      irradiance[c] = std::min(irradiance[c], kPi * static_cast<double>(s.material->emission[c]));
   found->weight = max_component(irradiance) * cosine;
   found->sent = lobe_value(s, to_viewer, found->direction) * irradiance * cosine;
   return true;
@@ -156,7 +162,7 @@ Vec3d arriving(const Reference& reference, const ReferenceSurface& s, std::uint3
   const FrameData& frame = *reference.world.frame;
   if (is_zero(light.sent)) return light.sent;
   return light.sent * transmittance(reference.world, leave(frame, s, light.direction, light.distance),
-                                    {kNone, frame.lights[i].material, false});
+                                    {kNone, frame.lights[i].material != kNone ? &frame.lights[i] : nullptr, false});
 }
 
 // A flat lamp as polygon_light.h has it, and how much of its light a surface gets as it sets.
@@ -250,9 +256,12 @@ Vec3d sum_light_points(const Reference& reference, const ReferenceSurface& s, co
     const LightRun& run = frame.light_runs[r];
     for (std::uint32_t i = run.begin; i < run.end; ++i) {
       const LightPoint& light = frame.lights[i];
-      if (light.material != kNone) {  // an emitter does not light itself
-        if (!with_area_lights || &frame.scene->materials[light.material] == s.material) continue;
-      }
+      const bool is_area = light.material != kNone;
+      if (is_area && !with_area_lights) continue;
+      // A piece of an emitter does not light itself; stored light has that of its material.
+      if (is_area && is_own(frame, s, light) &&
+          (has_stored_light(frame) || is_of_piece(frame, s.triangle, light)))
+        continue;
       if (run.polygons) {
         const std::uint32_t points = frame.settings.points_per_area_light;
         const LightPolygon& polygon = run.polygons[(i - run.begin) / points];

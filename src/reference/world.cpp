@@ -173,6 +173,19 @@ ReferenceHit next_hit(const ReferenceWorld& world, const ReferenceRay& ray, cons
   return best;
 }
 
+bool is_of_piece(const FrameData& frame, std::uint32_t triangle, const LightPoint& point) {
+  if (material_index(frame, triangle) != point.material) return false;
+  const Vec3d position = to_double(point.position), normal = to_double(point.direction);
+  auto largest = [](const Vec3d& v) { return std::fmax(std::fmax(std::fabs(v.x), std::fabs(v.y)), std::fabs(v.z)); };
+  bool is_in_plane = true;
+  for (std::uint32_t i = 0; i < 3; ++i) {
+    const Vec3d corner = corner_of(frame, triangle, i), offset = corner - position;
+    const double rounding = 0x1p-20 * std::fmax(largest(corner), largest(position));
+    is_in_plane = is_in_plane && std::fabs(dot(offset, normal)) <= 0x1p-9 * largest(offset) + rounding;
+  }
+  return is_in_plane;
+}
+
 Obstacle find_obstacle(const ReferenceWorld& world, const ReferenceRay& ray, const ShadowRules& rules) {
   const FrameData& frame = *world.frame;
   Obstacle worst = Obstacle::none;

@@ -48,7 +48,8 @@ ReferenceHit next_hit(const ReferenceWorld& world, const ReferenceRay& ray, cons
 
 // What casts no shadow, and whether transparent surfaces cast a full one.
 struct ShadowRules {
-  std::uint32_t but_triangle, but_material;  // these cast none; kNone: none
+  std::uint32_t but_triangle;     // casts none; kNone: none
+  const LightPoint* but_beside;   // nor what is of the same flat piece as this point of a lamp; null: none
   bool transparent_blocks;                   // glass blocks light; blending surfaces do not
 };
 enum class Obstacle { none, clear, opaque };
@@ -66,8 +67,10 @@ inline Vec3d corner_of(const FrameData& frame, std::uint32_t triangle, std::uint
 }
 // Alpha of the material at a hit, of full-size texels.
 double alpha_at(const FrameData& frame, std::uint32_t triangle, double u, double v);
+// Whether a triangle is of the lamp's flat piece that a point of it is on, as the renderer has it.
+bool is_of_piece(const FrameData& frame, std::uint32_t triangle, const LightPoint& point);
 inline bool casts_shadow(const FrameData& frame, std::uint32_t triangle, const ShadowRules& rules) {
-  return triangle != rules.but_triangle && material_index(frame, triangle) != rules.but_material;
+  return triangle != rules.but_triangle && !(rules.but_beside && is_of_piece(frame, triangle, *rules.but_beside));
 }
 inline bool blocks(const Material& m, const ShadowRules& rules) {
   return is_zero(m.transmission) ? m.alpha_mode != AlphaMode::blend : rules.transparent_blocks;

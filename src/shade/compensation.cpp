@@ -20,7 +20,7 @@ constexpr std::uint32_t kLightsOfPlace = 16;
 struct Candidate {
   Vec3 irradiance;
   Ray ray;
-  std::uint32_t emitter;  // that casts no shadow; kNone: none
+  const LightPoint* emitter;  // whose own flat piece casts no shadow; null: none
   std::uint16_t index;    // of the light
 };
 
@@ -73,7 +73,7 @@ struct CompensationRays {
     if (has(frame.mask, Effect::shadow)) {
       const ShadowContext context = {&frame, choice.chosen.emitter};
       const HitFilter opaque = {frame.accept_opaque, &context, frame.filters_read_point};
-      const bool is_filtered = frame.filter_every_shadow || choice.chosen.emitter != kNone;
+      const bool is_filtered = frame.filter_every_shadow || choice.chosen.emitter;
       ++*rays;
       *light = choice.chosen.index;
       if (frame.first_rays->occluded(frame.accel, choice.chosen.ray, is_filtered ? &opaque : nullptr, stats))
@@ -96,7 +96,7 @@ struct CompensationRays {
         const Vec3 irradiance = sample.irradiance * dot(s.normal, sample.direction);
         choice.add({irradiance,
                     {safe_origin(s, 1), sample.to_light, sample.t_max},
-                    light.material,
+                    emitter_of(light),
                     static_cast<std::uint16_t>(i)});
       }
     }
@@ -108,7 +108,7 @@ struct CompensationRays {
     Choice choice = {spread_number(place, kStepOfVirtualLights)};
     // Every sixteenth in spatial order, which represents all of them better than the lights of one place do.
     for (std::uint32_t i = place; i < lights.count; i += kPatternPixels) {
-      Candidate candidate = {{0, 0, 0}, {}, kNone, static_cast<std::uint16_t>(i)};
+      Candidate candidate = {{0, 0, 0}, {}, nullptr, static_cast<std::uint16_t>(i)};
       if (!arrives(lights.light[i], lights.geometry_max, s, &candidate.irradiance)) continue;
       candidate.ray = ray_to(lights.light[i], s, origin);
       choice.add(candidate);

@@ -272,7 +272,8 @@ template <EffectMask mask>
   const std::uint32_t count = frame.settings.points_per_area_light;
   for (std::uint32_t lamp = 0, first = run.begin; first < run.end; ++lamp, first += count) {
     const LightPolygon& polygon = run.polygons[lamp];
-    if (&frame.scene->materials[frame.lights[first].material] == s.material) continue;
+    const LightPoint& point = frame.lights[first];
+    if (polygon.corner_count && is_own(frame, s, point) && is_unlit_by_own(frame, s, point)) continue;
     const TilePolygon* tile = to.at_first_hit ? tile_polygon(*tracer, lamp) : nullptr;
     PolygonView view = {false, false, 0, 0};
     if (tile)

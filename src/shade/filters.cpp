@@ -2,6 +2,7 @@
 
 #include "base/check.h"
 #include "effect/effect_probe.h"
+#include "shade/lights.h"
 #include "shade/texture.h"
 
 namespace pocketray {
@@ -30,14 +31,14 @@ template <bool masked, bool clear>
 bool accept_opaque(const void* context, std::uint32_t triangle, float u, float v) {
   const auto& shadow = *static_cast<const ShadowContext*>(context);
   const FrameData& frame = *shadow.frame;
-  if (frame.scene->triangles[triangle].material() == shadow.emitter) return false;
+  if (shadow.emitter && is_beside(frame, *shadow.emitter, triangle)) return false;
   return !(clear && lets_light_through(material_of(frame, triangle))) && is_visible<masked>(frame, triangle, u, v);
 }
 template <bool masked>
 bool accept_clear(const void* context, std::uint32_t triangle, float u, float v) {
   const auto& shadow = *static_cast<const ShadowContext*>(context);
   const FrameData& frame = *shadow.frame;
-  if (frame.scene->triangles[triangle].material() == shadow.emitter) return false;
+  if (shadow.emitter && is_beside(frame, *shadow.emitter, triangle)) return false;
   return lets_light_through(material_of(frame, triangle)) && is_visible<masked>(frame, triangle, u, v);
 }
 

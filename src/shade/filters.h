@@ -7,7 +7,7 @@ namespace pocketray {
 // Context of the shadow filters.
 struct ShadowContext {
   const FrameData* frame;
-  std::uint32_t emitter;  // material of the light's own surface, which casts no shadow; kNone: none
+  const LightPoint* emitter;  // the point of an area light whose own flat piece casts no shadow; null: none
 };
 
 // Sets the frame's filters for its mask: visible (holes are cut out), opaque (blocks light completely) and clear (lets

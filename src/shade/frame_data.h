@@ -21,7 +21,7 @@ struct LightPoint {
   Vec3 intensity;  // radiant intensity along `direction` (area) or everywhere (point, spot); directional: irradiance
   float range;     // 0: no limit
   float cos_inner, cos_outer;
-  std::uint32_t material;   // of the emitter, which casts no shadow and does not light itself; otherwise kNone
+  std::uint32_t material;   // of the lamp, see shade/lights.h for its own surfaces; of other lights kNone
   std::uint32_t two_sided;  // area: emits on both sides
 };
 

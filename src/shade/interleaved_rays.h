@@ -156,7 +156,7 @@ template <class Source>
 void gather_interleaved(const FrameData& frame, const InterleavedPoints& points, const Source& source,
                         bool casts_shadows, TraceStats* stats, std::uint64_t* rays, InterleavedLight* light) {
   CHECK_LE(points.count, kPacketMax);
-  ShadowContext context = {&frame, kNone};
+  ShadowContext context = {&frame, nullptr};
   const HitFilter opaque = {frame.accept_opaque, &context, frame.filters_read_point};
   const HitFilter* filter = frame.filter_every_shadow ? &opaque : nullptr;
   PixelLights found;

@@ -70,7 +70,7 @@ class PointTester {
 
   bool trace(std::uint32_t point, const Ray& ray) {
     ++tracer_->rays[static_cast<int>(RayKind::shadow)];
-    const ShadowContext context = {&frame_, frame_.lights[first_ + point].material};
+    const ShadowContext context = {&frame_, &frame_.lights[first_ + point]};
     const HitFilter opaque = {frame_.accept_opaque, &context, frame_.filters_read_point};
     const AccelTraversal& rays = at_first_hit_ ? *frame_.first_rays : *frame_.accel_info;
     return rays.occluded(frame_.accel, ray, &opaque, &tracer_->stats);

@@ -144,9 +144,9 @@ template <EffectMask mask>
 [[gnu::noinline]] Vec3 traced_shadow(Tracer* tracer, const Surface& s, const LightRun& run, std::uint32_t light,
                                      const LightSample* known, bool at_first_hit, bool passes) {
   const FrameData& frame = *tracer->frame;
-  const std::uint32_t emitter = frame.lights[light].material;
+  const LightPoint* emitter = emitter_of(frame.lights[light]);
   bool blocked = false;
-  if (!passes && emitter != kNone && frame.point_groups.groups.count) {
+  if (!passes && emitter && frame.point_groups.groups.count) {
     --tracer->rays[static_cast<int>(RayKind::shadow)];  // those that it traces are counted there
     blocked = is_point_blocked(tracer, s, light, at_first_hit);
     passes = true;
@@ -159,7 +159,7 @@ template <EffectMask mask>
   const Ray ray = shadow_ray(frame, s, *known);
   ShadowContext context = {&frame, emitter};
   HitFilter opaque = {frame.accept_opaque, &context, frame.filters_read_point};
-  bool filtered = frame.filter_every_shadow || emitter != kNone;
+  bool filtered = frame.filter_every_shadow || emitter;
   if (!passes) {
     const AccelTraversal& rays = at_first_hit ? *frame.first_rays : *frame.accel_info;
     blocked = rays.occluded(frame.accel, ray, filtered ? &opaque : nullptr, &tracer->stats);

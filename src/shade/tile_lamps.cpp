@@ -28,7 +28,8 @@ void find_views(const FrameData& frame, const TileReceivers& receivers, TileLamp
   for (std::uint32_t k = 0; k < receivers.count; ++k) {
     const std::uint32_t pixel = receivers.pixel[k];
     const Surface& s = shadows->surface[pixel];
-    if (&frame.scene->materials[frame.lights[lamp->first].material] == s.material) continue;
+    const LightPoint& point = frame.lights[lamp->first];
+    if (is_own(frame, s, point) && is_unlit_by_own(frame, s, point)) continue;
     const PolygonView view = tile.view[pixel] = view_polygon(polygon, s);
     tile.viewed.set(pixel);
     if (!view.is_near) continue;
@@ -125,6 +126,7 @@ class TilePoints {
   void add_rays(std::uint32_t point, std::uint64_t pixels) {
     const std::uint64_t fresh = pixels & probes_[point] & ~known_[point];
     const Vec3& position = frame_.lights[first_ + point].position;
+    begin_point(frame_.lights[first_ + point]);
     known_[point] |= fresh;
     for (std::uint64_t rest = fresh; rest; rest &= rest - 1) {
       const std::uint32_t place = static_cast<std::uint32_t>(__builtin_ctzll(rest));
@@ -134,10 +136,17 @@ class TilePoints {
       set_ray(&packet_, packet_.count++, {receivers_.origin[place], position - shadows_->surface[place].point, 1});
     }
   }
+  // The rays of a packet end at points of one plane, whose triangles do not hide them.
+  void begin_point(const LightPoint& light) {
+    const bool same = packet_.count == 0 || (dot(light.direction, light_->direction) > 1 - 0x1p-16f &&
+                                             is_in_plane(*light_, light.position));
+    if (!same) trace();
+    light_ = &light;
+  }
   void trace() {
     if (packet_.count == 0) return;
     tracer_->rays[static_cast<int>(RayKind::shadow)] += packet_.count;
-    for (std::uint64_t found = trace_packet(tracer_, packet_, frame_.lights[first_].material); found;
+    for (std::uint64_t found = trace_packet(tracer_, packet_, light_); found;
          found &= found - 1) {
       const int ray = __builtin_ctzll(found);
       blocked_[point_[ray]] |= std::uint64_t(1) << pixel_[ray];
@@ -180,6 +189,7 @@ class TilePoints {
   const PointGroup* groups_;
   const std::uint8_t* order_;
   SegmentPacket packet_;
+  const LightPoint* light_;  // at which a ray of the packet ends
   std::uint8_t pixel_[kPacketMax], point_[kPacketMax];                                   // of its rays
   std::uint64_t probes_[kTileLightMax], known_[kTileLightMax], blocked_[kTileLightMax];  // by point
 };

@@ -35,7 +35,7 @@ void find_receivers(const FrameData& frame, const RayPacket& rays, const Hit* hi
                     TileReceivers* receivers);
 
 // Which of the shadow rays to an area light something opaque blocks, or to another one (kNone): bit i is ray i.
-std::uint64_t trace_packet(Tracer* tracer, const SegmentPacket& packet, std::uint32_t emitter);
+std::uint64_t trace_packet(Tracer* tracer, const SegmentPacket& packet, const LightPoint* emitter);
 
 // Pixels whose view of a light is known: that it surely lights them up, that it does not; and of the first, those to
 // which it matters.
@@ -73,7 +73,7 @@ struct KnownViews {
     set_ray(&packet, packet.count++, {receivers.origin[place], sample.to_light, sample.t_max});
   }
   if (packet.count > 0)
-    for (std::uint64_t blocked = trace_packet(tracer, packet, light.material); blocked; blocked &= blocked - 1)
+    for (std::uint64_t blocked = trace_packet(tracer, packet, emitter_of(light)); blocked; blocked &= blocked - 1)
       hidden.set(pixel[__builtin_ctzll(blocked)]);
   shadows->lit[i] = lit, shadows->traced[i] = traced, shadows->blocked[i] = hidden;
 }

@@ -15,11 +15,11 @@ void find_receivers(const FrameData& frame, const RayPacket& rays, const Hit* hi
   }
 }
 
-std::uint64_t trace_packet(Tracer* tracer, const SegmentPacket& packet, std::uint32_t emitter) {
+std::uint64_t trace_packet(Tracer* tracer, const SegmentPacket& packet, const LightPoint* emitter) {
   const FrameData& frame = *tracer->frame;
   ShadowContext context = {&frame, emitter};
   HitFilter opaque = {frame.accept_opaque, &context, frame.filters_read_point};
-  bool filtered = frame.filter_every_shadow || emitter != kNone;
+  bool filtered = frame.filter_every_shadow || emitter != nullptr;
   return frame.first_rays->occluded_packet(frame.accel, packet, filtered ? &opaque : nullptr, &tracer->stats);
 }
 

@@ -95,7 +95,7 @@ void add_later_virtual_light(Tracer* tracer, const Vec3& weight, Surface* surfac
   const float tolerance = frame.settings.light_tolerance / max_component(weight);
   const VirtualSource source = {lights, lights.geometry_max, tolerance};
   find_sources(source, s, SteppedIndices<1>(0, lights.count), &found);
-  const ShadowContext context = {&frame, kNone};
+  const ShadowContext context = {&frame, nullptr};
   const HitFilter opaque = {frame.accept_opaque, &context, frame.filters_read_point};
   const Vec3 lit = arriving_light(source, s, found, [&](const Ray& ray) {
     ++tracer->rays[static_cast<int>(RayKind::shadow)];

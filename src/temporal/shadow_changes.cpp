@@ -85,8 +85,8 @@ void find_changed_shadows(TileSearch* t, const LightRun& run, std::uint32_t ligh
   ShadowRays s;
   list_shadow_rays(t, run, frame.lights[light], room, known, &s);
   if (s.rays.count == 0) return;
-  ShadowContext shadow = {&frame, frame.lights[light].material};
-  bool filtered = frame.filter_every_shadow || shadow.emitter != kNone;
+  ShadowContext shadow = {&frame, emitter_of(frame.lights[light])};
+  bool filtered = frame.filter_every_shadow || shadow.emitter != nullptr;
   bool clear = frame.accept_clear != nullptr;  // a transparent surface tints: anything in the way counts
   const ShadowFilters filters(m, {filtered ? frame.accept_opaque : nullptr, &shadow});
   const HitFilter* filter = filtered && !clear ? &filters.moving : nullptr;

@@ -34,7 +34,7 @@ void find_blocked_otherwise(TileSearch* t, ShadowRays* s) {
   if (s->rays.count == 0) return;
   const FrameData& frame = t->frame;
   const MovingGeometry& m = *t->search.moving;
-  ShadowContext shadow = {&frame, kNone};
+  ShadowContext shadow = {&frame, nullptr};
   const ShadowFilters filters(m, {frame.filter_every_shadow ? frame.accept_opaque : nullptr, &shadow});
   const HitFilter* filter = frame.filter_every_shadow ? &filters.moving : nullptr;
   const std::uint64_t all = ~std::uint64_t(0) >> (kPacketMax - s->rays.count);

@@ -348,8 +348,8 @@ TEST_CASE("polygon_light_does_not_light_its_lamp") {
   CHECK(seen > 200);
 }
 
-// Goal: lamps that a polygon describes get one. Method: outlines of a square, of several, of an L and of a
-// triangle; none for lamps in parts, bent, of two sides, with textures, or of many corners.
+// Goal: lamps that a polygon describes get one. Method: outlines of a square, of several, of an L and of a triangle; each
+// plane of a lamp that is bent or has two sides; none for lamps in parts, with textures, or of many corners.
 TEST_CASE("light_polygons_of_flat_lamps") {
   auto corners_of = [](auto build) {
     GeneratedScene s;
@@ -361,7 +361,9 @@ TEST_CASE("light_polygons_of_flat_lamps") {
     auto test = make_renderer(s.scene, settings_of(4));
     REQUIRE(render_frame(&test->renderer, 0).ok);
     const Array<const LightPolygon>& polygons = test->renderer.frame.light_polygons;
-    return polygons.count ? polygons[0].corner_count : 0;
+    std::uint32_t corners = 0;
+    for (const LightPolygon& polygon : polygons) corners += polygon.corner_count;
+    return corners;
   };
   auto quad = [](GeneratedScene* s, float x, float y, float side, std::uint32_t m, float lift = 0) {
     add_quad(s, {x, y + side, 3 + lift}, {x + side, y + side, 3 + lift}, {x + side, y, 3}, {x, y, 3}, m);
@@ -373,11 +375,11 @@ TEST_CASE("light_polygons_of_flat_lamps") {
           add_triangle(s, add_vertex(s, {0, 1, 3}), add_vertex(s, {1, 0, 3}), add_vertex(s, {0, 0, 3}), m);
         }) == 3);
   CHECK(corners_of([&](auto* s, auto m) { quad(s, 0, 0, 1, m), quad(s, 5, 0, 1, m); }) == 0);
-  CHECK(corners_of([&](auto* s, auto m) { quad(s, 0, 0, 1, m), quad(s, 0, 1, 1, m, 0.1f); }) == 0);
+  CHECK(corners_of([&](auto* s, auto m) { quad(s, 0, 0, 1, m), quad(s, 0, 1, 1, m, 0.1f); }) == 8);
   CHECK(corners_of([&](auto* s, auto m) {
           quad(s, 0, 0, 1, m);
           add_quad(s, {0, 0, 3}, {1, 0, 3}, {1, 1, 3}, {0, 1, 3}, m);  // its back
-        }) == 0);
+        }) == 8);
   CHECK(corners_of([&](auto* s, auto m) {
           s->with_uvs = true;
           s->materials[m].emission_texture.texture = add_texture(s, 1, 1, {{255, 255, 255, 255}});
