@@ -2,12 +2,12 @@
 // link's clock.
 //
 // There are three lanes. The light lane serves accounts that have been sent light frames, of at most kLightNs, and owe
-// little. The newcomers' lane serves those that have not, until they have used kNewcomerNs. The heavy lane serves the
-// rest: longer frames, rendered but unsent rows, and floods of other requests. While both have work, the light lane
-// gets kBehindPart - 1 of kBehindPart turns, measured in time, and the other two share the rest in the same proportion.
-// The longest-seated newcomer goes first, so those that keep coming back only wait for each other. In the other lanes
-// the account that has used the least CPU goes first [Goyal et al. 1996, start-time fair queueing]; one that was away
-// is credited at most kCreditNs, a new one nothing.
+// little; of frames given up in part, only the part that was sent counts. The newcomers' lane serves those that have
+// not, until they have used kNewcomerNs. The heavy lane serves the rest: longer frames, rendered but unsent rows, and
+// floods of other requests. While both have work, the light lane gets kBehindPart - 1 of kBehindPart turns, measured in
+// time, and the other two share the rest in the same proportion. The longest-seated newcomer goes first, so those that
+// keep coming back only wait for each other. In the other lanes the account that has used the least CPU goes first
+// [Goyal et al. 1996, start-time fair queueing]; one that was away is credited at most kCreditNs, a new one nothing.
 #pragma once
 #include <cstdint>
 
