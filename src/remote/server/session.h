@@ -105,6 +105,7 @@ struct Session {
   char reason[160] = {0};               // why it must leave
   std::uint32_t message_bytes_max = 0;  // largest message the client accepts
   int address = -1;                     // index of the server's account for its address
+  std::uint64_t seated_ns = 0;          // since when it has its place
   Account account;
   std::uint64_t ended_took_ns = 0, ended_sent_ns = 0, ended_build_ns = 0;  // of finished frames not yet accounted for
   std::uint32_t chunk_count = 0;                                           // sent to the client

@@ -70,6 +70,8 @@ inline bool is_heavy(const Account& account) { return account.lane == Lane::heav
 inline bool is_proven(const Account& account) { return account.earned_ns > 0; }
 // The lane of an account with what it owes now.
 Lane lane_of(const Account& account);
+// Its debt with `more_ns`, if this is more than its lane allows; 0: it behaves. A frame in progress may yet be light.
+std::uint64_t offence_ns(const Account& account, std::uint64_t more_ns);
 
 // Updates an account before a choice; `waits`: it has work.
 void note(Lanes* lanes, Account* account, bool waits);
