@@ -7,7 +7,7 @@ names=$(cd "$1" && ctest -N -R "$2" | sed -n 's/^ *Test *#[0-9]*: //p')
 for name in $names; do
   case $name in
     absence | bench_embree | install | documents | source_rules | assertions | mutation_list) echo all ;;
-    cli_* | serve | conformance | numbers | packages | blender) echo pocketray_sealed ;;
+    cli_* | serve | conformance | reconnects | numbers | packages | blender) echo pocketray_sealed ;;
     objects | turns) echo pocketray_core ;;
     mpi | wrong_cpu | device_parts) echo pocketray ;;
     progressive_cost) echo progressive_cost ;;

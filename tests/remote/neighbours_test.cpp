@@ -3,126 +3,16 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
-#include <cstdio>
-#include <cstdlib>
-#include <cstring>
 #include <string>
 
-#include "client_count.h"
+#include "crowd_rig.h"
+#include "effect/setting_list.h"
 #include "remote/server/state.h"
 #include "support/effort.h"
-#include "support/scripted_client.h"
 
 using namespace pocketray;
 
 namespace {
-
-constexpr std::uint64_t kPixelNs = 50'000;
-constexpr std::uint32_t kGoodWidth = 40, kGoodHeight = 30;
-
-// Addresses of connections in order of creation, as the simulated link has only one.
-std::vector<int>* address_of = nullptr;
-const char* named_by_address(const platform::Link* link, int stream) {
-  static char name[48];
-  const char* own = platform::kNullLink.stream_name(link, stream);
-  int port = std::atoi(std::strrchr(own, ':') + 1);
-  std::size_t connection = static_cast<std::size_t>(port - 49152);
-  if (connection >= address_of->size()) return own;
-  std::snprintf(name, sizeof name, "10.0.0.%d:%d", (*address_of)[connection], port);
-  return name;
-}
-
-enum class Attack {
-  none,
-  heavy_frames,  // of 8 s each
-  given_up,      // replaced after a while
-  views,         // with measured exposure
-  pings,         // with the largest answers
-  fetches,       // of a scene
-  small_messages,
-  silence,       // holds a place and nothing else
-  light_frames,  // as light as the good client's
-  // On a connection of its own each:
-  views_again,
-  pings_again,
-  given_up_again,
-};
-
-// Where each attacker's connections come from.
-enum class Origin { own, new_one, one, the_clients };
-const char* const kOriginNames[] = {"addresses of their own", "a new address each time", "one address",
-                                    "the client's address"};
-
-struct Attacker {
-  std::unique_ptr<ScriptedClient> client;
-  std::uint32_t frame = 0;
-  std::uint64_t asked_ns = 0, begun_ns = 0;
-  std::size_t waiting = 0;
-};
-
-// Whether it has had its answer, or waited long enough, and comes again.
-bool comes_again(Attack kind, ServerRig* rig, const Attacker& a) {
-  const std::uint64_t passed = rig->now() - a.begun_ns;
-  const bool late = a.frame > 0 && passed > 100 * kMs;
-  if (passed < 5 * kMs) return false;
-  return a.client->closed || late ||
-         a.client->has(kind == Attack::pings_again ? MessageType::pong : MessageType::view_entry);
-}
-
-void attack(Attack kind, ServerRig* rig, Attacker* a) {
-  ScriptedClient* c = a->client.get();
-  Message message;
-  message.type = MessageType::ping;
-  if (kind >= Attack::views_again) {
-    if (a->frame > 0) return;
-    a->frame = 1;
-    message.ping = {1, kPingBytesMax};
-    message.view_query.scene = builtin_hash("cube");
-    message.view_query.measure_exposure = true;
-    message.view_query.settings.width = 999;
-    message.view_query.settings.height = 500;
-    if (kind == Attack::given_up_again) return c->request(frame_request("cube", 1, 480, 320));
-    if (kind == Attack::views_again) message.type = MessageType::view_query;
-    for (int i = 0; i < 8; ++i) c->send(message);
-    return;
-  }
-  c->poll();
-  if (c->closed || c->has(MessageType::error)) FAIL("an attacker was refused");
-  bool is_flood = kind == Attack::pings || kind == Attack::fetches || kind == Attack::small_messages;
-  if (is_flood) {
-    a->waiting -= std::min(a->waiting, c->received.size());
-    c->received.clear();
-    message.ping = {1, kPingBytesMax};
-    if (kind == Attack::fetches) {
-      message.type = MessageType::scene_fetch;
-      message.scene_fetch = {builtin_hash("cornell"), 0, kPieceBytesMax};
-    }
-    if (kind == Attack::small_messages) message.type = MessageType::scene_list;
-    for (; a->waiting < 8; ++a->waiting) c->send(message);
-    return;
-  }
-  bool first = a->frame == 0, done = c->rows_come > 0;
-  if (kind == Attack::views && (first || c->has(MessageType::view_entry))) {
-    c->received.clear();
-    message.type = MessageType::view_query;
-    message.view_query.scene = builtin_hash("cube");
-    message.view_query.measure_exposure = true;
-    message.view_query.settings.width = 999;
-    message.view_query.settings.height = 500;
-    c->send(message);
-    a->frame = 1;
-  }
-  if (kind == Attack::heavy_frames) done = c->rows_come == 320;
-  if (kind == Attack::light_frames) done = c->rows_come == kGoodHeight;
-  if (kind == Attack::given_up) done = rig->now() - a->asked_ns > 150 * kMs;
-  if (kind < Attack::views || kind == Attack::light_frames)
-    if (kind != Attack::none && (first || done)) {
-      FrameRequest request = frame_request("cube", ++a->frame, 480, 320);
-      if (kind == Attack::light_frames) request = frame_request("cube", a->frame, kGoodWidth, kGoodHeight);
-      c->request(request);
-      a->asked_ns = rig->now();
-    }
-}
 
 struct FrameTimes {
   double median_ms = 0, longest_ms = 0;
@@ -131,34 +21,13 @@ struct FrameTimes {
 // Times of the good client's frames from the first second of the attack on. It comes before the attackers, or after
 // they have begun.
 FrameTimes frame_times(Attack kind, int attacker_count, Origin origin, bool comes_first = true) {
-  ServerOptions options;
-  options.pace.ns_per_pixel = static_cast<double>(kPixelNs);
-  options.message_ns = 50'000, options.byte_ps = 10'000;
-  options.client_count_max = 24;
-  options.client_memory_bytes = 12u << 20;
-  ServerRig rig(options);
-  constexpr int kGood = 1, kOne = 2, kOwn = 100;
-  std::vector<int> addresses;
-  address_of = &addresses;
-  platform::LinkBackend net = platform::kNullLink;
-  net.stream_name = named_by_address;
-  rig.server->net = &net;
-
+  ServerRig rig(crowd_options(24));
+  AddressBook book(&rig);
   std::unique_ptr<ScriptedClient> good;
-  auto come = [&] {
-    addresses.push_back(kGood);
-    good = std::make_unique<ScriptedClient>(&rig);
-  };
+  auto come = [&] { good = book.connect(kGoodAddress); };
   if (comes_first) come(), good->wait_for(MessageType::hello);
-  std::vector<Attacker> attackers(static_cast<std::size_t>(attacker_count));
-  auto connect = [&](std::size_t i) {
-    const int own = kOwn + static_cast<int>(origin == Origin::new_one ? addresses.size() : i);
-    addresses.push_back(origin == Origin::the_clients ? kGood : origin == Origin::one ? kOne : own);
-    attackers[i] = Attacker();
-    attackers[i].begun_ns = rig.now();
-    attackers[i].client = std::make_unique<ScriptedClient>(&rig);
-  };
-  for (std::size_t i = 0; i < attackers.size(); ++i) connect(i);
+  AttackCrowd crowd = {&rig, &book, kind, origin};
+  crowd.connect(attacker_count);
   FrameRequest request = frame_request("cornell", 0, kGoodWidth, kGoodHeight);
   std::vector<double> times;
   const std::uint64_t start = rig.now(), settled = start + (attacker_count > 0 ? 1000 * kMs : 0);
@@ -166,11 +35,7 @@ FrameTimes frame_times(Attack kind, int attacker_count, Origin origin, bool come
   const std::size_t wanted = 15;
   rig.run_until(
       [&] {
-        for (std::size_t i = 0; i < attackers.size(); ++i) {
-          attackers[i].client->poll();
-          if (kind >= Attack::views_again && comes_again(kind, &rig, attackers[i])) connect(i);
-          attack(kind, &rig, &attackers[i]);
-        }
+        crowd.act();
         if (!good && rig.now() - start > 200 * kMs) come();
         if (!good) return false;
         good->poll();
@@ -184,7 +49,6 @@ FrameTimes frame_times(Attack kind, int attacker_count, Origin origin, bool come
         return times.size() >= wanted;
       },
       200'000 * kMs);
-  rig.server->net = &platform::kNullLink;
   std::sort(times.begin(), times.end());
   return {times[times.size() / 2], times.back()};
 }
@@ -206,6 +70,7 @@ TEST_CASE("neighbours_cost_a_light_client_a_third_of_its_frames_at_most") {
   const Case cases[] = {
       {Attack::heavy_frames, "heavy frames", {Origin::own, Origin::the_clients}, true},
       {Attack::given_up, "frames given up", {Origin::own, Origin::the_clients}, false},
+      {Attack::given_up_late, "frames given up after some rows", {Origin::own, Origin::the_clients}, true},
       {Attack::views, "view queries", {Origin::own}, true},
       {Attack::pings, "pings", {Origin::own, Origin::the_clients}, true},
       {Attack::fetches, "fetches of a scene", {Origin::own}, false},
@@ -220,9 +85,8 @@ TEST_CASE("neighbours_cost_a_light_client_a_third_of_its_frames_at_most") {
     for (const Origin origin : c.origins)
       for (const bool comes_first : {true, false}) {
         const FrameTimes times = frame_times(c.kind, 20, origin, comes_first);
-        const std::string name = std::string(c.name) + (c.kind >= Attack::views_again ? ", each anew" : "") +
-                                 ", from " + kOriginNames[static_cast<int>(origin)] +
-                                 (comes_first ? "" : ", already there");
+        const std::string name = std::string(c.name) + (is_repeated(c.kind) ? ", each anew" : "") + ", from " +
+                                 kOriginNames[static_cast<int>(origin)] + (comes_first ? "" : ", already there");
         MESSAGE("20 neighbours, " << name << ": " << times.median_ms / alone << " times as long, at most "
                                   << times.longest_ms / alone);
         CHECK_MESSAGE(times.median_ms <= 1.5 * alone, name);
@@ -235,6 +99,23 @@ TEST_CASE("neighbours_cost_a_light_client_a_third_of_its_frames_at_most") {
 TEST_CASE("neighbours_with_light_frames_share_by_address") {
   const double alone = frame_times(Attack::none, 0, Origin::own).median_ms;
   CHECK(frame_times(Attack::light_frames, 20, Origin::one).median_ms <= 2.1 * alone);
+}
+
+// Goal: light without rows makes a client light. Method: the standing of one that asks for a light map alone, before
+// and after.
+TEST_CASE("server_trusts_who_was_sent_light_alone") {
+  ServerRig rig(crowd_options(8));
+  ScriptedClient client(&rig);
+  client.wait_for(MessageType::hello);
+  FrameRequest request = frame_request("cornell", 1, kGoodWidth, kGoodHeight);
+  request.settings.indirect = indirect_choice(Effect::instant_radiosity);
+  request.light_pitch = 4;
+  request.row_begin = request.row_end = 0;
+  CHECK_FALSE(is_proven(rig.server->sessions[0].account));
+  client.request(request);
+  client.wait_for(MessageType::light_map);
+  rig.run_until([&] { return is_proven(rig.server->sessions[0].account); }, 100 * kMs);
+  CHECK(lane_of(rig.server->sessions[0].account) == Lane::light);
 }
 
 // Goal: a view_query measures exposure in slices, so that nobody waits for all of it. Method: the longest busy time of
@@ -265,59 +146,6 @@ TEST_CASE("server_measures_exposures_in_slices") {
   CHECK(longest_ns <= 8 * 25'000'000ull);  // the first ones, with unknown cost
   client.send(ping);
   client.wait_for(MessageType::pong);
-}
-
-// Goal: silent clients give way to others. Method: eight that only say hello, from eight addresses; a ninth is told
-// that the server is busy, and admitted once they have been silent for ten seconds.
-TEST_CASE("server_gives_the_place_of_who_is_silent_to_who_comes") {
-  ServerRig rig;
-  std::vector<int> addresses = {1, 2, 3, 4, 5, 6, 7, 8, 9, 9};
-  address_of = &addresses;
-  platform::LinkBackend net = platform::kNullLink;
-  net.stream_name = named_by_address;
-  rig.server->net = &net;
-  std::vector<std::unique_ptr<ScriptedClient>> silent;
-  for (int i = 0; i < 8; ++i) silent.push_back(std::make_unique<ScriptedClient>(&rig));
-  rig.run_until([&] { return client_count(*rig.server) == 8; });
-  ScriptedClient early(&rig);
-  CHECK(early.wait_for(MessageType::error)->message.error.code == WireError::busy);
-  std::uint64_t later = rig.now() + 10'000 * kMs;
-  rig.run_until([&] { return rig.now() >= later; });
-  ScriptedClient ninth(&rig);
-  ninth.request(frame_request("cube", 1, 16, 12));
-  ninth.wait_for_rows(12);
-  CHECK(client_count(*rig.server) == 8);
-  rig.run_until([&] { return silent[0]->poll(), silent[0]->closed; });
-  CHECK(silent[0]->has_error(WireError::busy));
-  rig.server->net = &platform::kNullLink;
-}
-
-// Goal: one address cannot keep others out, however busy its clients are. Method: eight from one address with frames in
-// progress; two from other addresses get in, a ninth from the first does not.
-TEST_CASE("server_gives_no_address_all_places_for_long") {
-  ServerOptions options;
-  options.pace.ns_per_pixel = 100'000;
-  ServerRig rig(options);
-  std::vector<int> addresses = {1, 1, 1, 1, 1, 1, 1, 1, 2, 3, 1};
-  address_of = &addresses;
-  platform::LinkBackend net = platform::kNullLink;
-  net.stream_name = named_by_address;
-  rig.server->net = &net;
-  std::vector<std::unique_ptr<ScriptedClient>> many;
-  for (int i = 0; i < 8; ++i) {
-    many.push_back(std::make_unique<ScriptedClient>(&rig));
-    many.back()->request(frame_request("cube", 1, 320, 240));
-  }
-  rig.run_until([&] { return client_count(*rig.server) == 8; });
-  for (int i = 0; i < 2; ++i) {
-    many.push_back(std::make_unique<ScriptedClient>(&rig));
-    many.back()->request(frame_request("cube", 1, 16, 12));
-    many.back()->wait_for_rows(12);
-  }
-  ScriptedClient late(&rig);
-  CHECK(late.wait_for(MessageType::error)->message.error.code == WireError::busy);
-  CHECK(client_count(*rig.server) == 8);
-  rig.server->net = &platform::kNullLink;
 }
 
 // Goal: after a failed accept() the listener rests for a while. Method: a link whose accept() fails, with a waiting
@@ -367,37 +195,4 @@ TEST_CASE("server_slices_expect_dear_pixels_behind_cheap_ones") {
   for (int i = 0; i < 3; ++i) known = dear_pixel_ns(known, kBackgroundNs);  // left and right of the room
   CHECK(known > 0.6 * kRoomNs);
   CHECK(dear_pixel_ns(known, kRoomNs) == kRoomNs);
-}
-
-// Goal: whoever opens connections without a hello has half of the guests' places at most, so that a client from
-// elsewhere gets in at once, and its own oldest ones make way. Method: a flood from one address, then a client.
-TEST_CASE("server_keeps_guests_places_for_other_addresses") {
-  ServerRig rig;
-  const int half = ServerOptions().guest_count_max / 2;
-  std::vector<int> flood;
-  auto is_open = [&](int stream) {
-    char byte[64];
-    std::size_t count = 0;
-    platform::Error error;
-    platform::LinkResult result = platform::LinkResult::done;
-    while (result == platform::LinkResult::done)
-      result = rig.net->read(rig.link, stream, byte, sizeof byte, &count, &error);
-    return result == platform::LinkResult::later;
-  };
-  for (int i = 0; i < 3 * half; ++i) {
-    platform::Error error;
-    int stream = platform::null_link_connect_from(rig.link, "10.0.0.7", rig.address, 1000 * kMs, &error);
-    REQUIRE_MESSAGE(stream >= 0, error.text);
-    flood.push_back(stream);
-    rig.step();
-    rig.step();
-  }
-  for (int i = 0; i < 3 * half; ++i) {
-    CAPTURE(i);
-    CHECK_EQ(is_open(flood[static_cast<std::size_t>(i)]), i >= 2 * half);
-  }
-  ScriptedClient client(&rig);
-  client.wait_for(MessageType::hello, 100 * kMs);
-  for (int i = 2 * half; i < 3 * half; ++i) CHECK(is_open(flood[static_cast<std::size_t>(i)]));
-  for (int stream : flood) rig.net->close(rig.link, stream);
 }

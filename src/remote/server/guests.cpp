@@ -1,5 +1,4 @@
-// Admission: connections become guests, and guests that say hello get a place. If all places are taken, an address with
-// more places than the newcomer's gives one up.
+// Admission: connections become guests, and guests that say hello get a place.
 #include <algorithm>
 #include <cstring>
 
@@ -11,9 +10,8 @@ namespace {
 
 using platform::LinkResult;
 
-// Chosen: a few round trips of a slow link; longer than a person pauses between two frames; a pause that logs no flood.
-constexpr std::uint64_t kLingerNs = 2'000'000'000;    // for a leaving peer to read the reason
-constexpr std::uint64_t kMakeWayNs = 10'000'000'000;  // of silence after which a client makes way for another
+// Chosen: a few round trips of a slow link; a pause that logs no flood.
+constexpr std::uint64_t kLingerNs = 2'000'000'000;  // for a leaving peer to read the reason
 constexpr std::uint64_t kAcceptRestNs =
     1'000'000'000;  // pause after a failed accept, since what was short will not be free at once
 // After guests were tended, they rest for this many times what that took, but at most a slice, while sessions have
@@ -120,60 +118,6 @@ int find_address(Server* server, std::uint64_t key) {
   return chosen;
 }
 
-int places_of(const Server& server, int address) {
-  return static_cast<int>(std::count_if(server.sessions.begin(), server.sessions.end(), [&](const Session& session) {
-    return session.phase != SessionPhase::unused && session.address == address;
-  }));
-}
-
-std::uint64_t silent_ns(Server* server, Session* session) {
-  std::uint64_t left = platform::link_timer_left(&session->idle_timer, now_ns(server));
-  return server->options.idle_timeout_ns - std::min(left, server->options.idle_timeout_ns);
-}
-
-// The session that must leave for one of `address`; null if none. Those may have to whose address has at least two more
-// places, and idle ones whose address has more places or is `address` itself. Of the address with most places, one that
-// has not been sent light frames leaves first, then the longest silent. While `address` itself has such sessions, those
-// that have behaved keep their places from it.
-Session* find_leaver(Server* server, int address) {
-  int own = places_of(*server, address), most = 0;
-  bool proven = true;
-  std::uint64_t longest = 0;
-  Session* chosen = nullptr;
-  const bool keeps_proven = std::any_of(server->sessions.begin(), server->sessions.end(), [&](const Session& session) {
-    return session.phase != SessionPhase::unused && session.address == address && !is_proven(session.account);
-  });
-  for (Session& session : server->sessions) {
-    if (session.phase == SessionPhase::unused) continue;
-    if (session.messages.ended) return &session;  // what it has sent would be answered to nobody
-    int count = places_of(*server, session.address);
-    std::uint64_t silent = silent_ns(server, &session);
-    bool idle = session.phase == SessionPhase::leaving || (!has_job(session) && silent >= kMakeWayNs);
-    bool from_own = session.address == address && !(keeps_proven && is_proven(session.account));
-    bool may_go = count >= own + 2 || (idle && (count > own || from_own));
-    if (!may_go || count < most) continue;
-    const bool worse = !is_proven(session.account), as_good = worse == !proven;
-    if (count == most && chosen && (as_good ? silent <= longest : !worse)) continue;
-    chosen = &session, most = count, longest = silent, proven = !worse;
-  }
-  return chosen;
-}
-
-Session* find_place(Server* server, int address) {
-  for (Session& session : server->sessions)
-    if (session.phase == SessionPhase::unused) return &session;
-  Session* leaver = find_leaver(server, address);
-  if (!leaver) return nullptr;
-  if (leaver->phase == SessionPhase::serving && output_room(leaver->messages) >= kReplyBytesMax) {
-    send_error(leaver, WireError::busy, 0);
-    platform::Error error;
-    (void)flush_message_stream(&leaver->messages, &error);
-    discard_input(&leaver->messages);
-  }
-  end_session(server, leaver, "it made way for another client");
-  return leaver;
-}
-
 const char* name_of(const Server& server, const Guest& guest) {
   return server.net->stream_name(server.link, guest.messages.stream);
 }
@@ -209,7 +153,7 @@ void seat(Server* server, Guest* guest, const Hello& hello) {
   session->message_bytes_max = hello.message_bytes_max;
   std::snprintf(session->name, sizeof session->name, "%s", name_of(*server, *guest));
   std::uint64_t now = now_ns(server);
-  server->addresses[static_cast<std::size_t>(address)].last_ns = now;
+  server->addresses[static_cast<std::size_t>(address)].last_ns = session->seated_ns = now;
   session->message_timer = platform::link_timer(now, server->options.message_timeout_ns);
   session->idle_timer = platform::link_timer(now, server->options.idle_timeout_ns);
   session->stall_timer = platform::link_timer(now, server->options.stall_timeout_ns);

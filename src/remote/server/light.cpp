@@ -105,7 +105,7 @@ void send_light(Session* session) {
   const std::size_t bytes = encode_light(light, columns, rows, kFaintest / renderer->exposure, at + prefix);
   message.light_map.bytes = {at + prefix, static_cast<std::uint32_t>(bytes)};
   send_message(session, message);
-  job->has_light = false;
+  job->has_light = false, job->sent_light = true;
   job->work_ns = job->pixel_count = 0;
   job->coarse_row = job->coarse_column = 0;
   if (has_rows(job->traced)) return begin_job_rows(session);

@@ -129,6 +129,16 @@ void next_slice(void* context, SpanBatch* batch) {
   source->slice = {rows, 0, rows * settings.width, traced, false, false};
 }
 
+// The part of a job's time that its client has had something of: that of sent rows, by the part of the rows asked for
+// that they are. A client that keeps asking for frames and gives them up after the first rows earns next to nothing.
+std::uint64_t useful_ns(const FrameJob& job) {
+  const std::uint64_t took_ns = job.took_ns - job.build_ns, asked = job.request.row_end - job.request.row_begin;
+  if (job.is_view_query) return 0;
+  if (asked == 0) return job.sent_light ? took_ns : 0;
+  if (job.rows_traced == 0) return 0;
+  return took_ns * job.rows_sent / job.rows_traced * job.rows_sent / asked;
+}
+
 }  // namespace
 
 std::uint32_t picoseconds(std::uint64_t ns, std::uint64_t pixel_count) {
@@ -183,8 +193,7 @@ void drop_job(Session* session) {
   CHECK_LE(job->build_ns, job->took_ns);
   session->ended_took_ns += job->took_ns;
   session->ended_build_ns += job->build_ns;
-  if (!job->is_view_query && job->rows_traced > 0)
-    session->ended_sent_ns += (job->took_ns - job->build_ns) * job->rows_sent / job->rows_traced;
+  session->ended_sent_ns += useful_ns(*job);
 }
 
 bool has_chunk(const Session& session) {

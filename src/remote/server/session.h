@@ -60,7 +60,7 @@ struct FrameJob {
   std::uint32_t traced_columns;
   std::uint32_t coarse_row, coarse_column, coarse_rows;  // on the grid of the coarse picture: next pixel, rows at once
   bool has_coarse;                                       // it is traced and waits to be sent
-  bool has_light;                      // the same of a light map, on whose grid the fields above count
+  bool has_light, sent_light;          // the same of a light map, on whose grid the fields above count; it is sent
   bool codes_beside;                   // its finished chunk is coded beside the next slice
   std::uint64_t work_ns, pixel_count;  // of rows traced but not completely sent
   std::uint64_t took_ns;               // CPU time so far,
@@ -105,6 +105,7 @@ struct Session {
   char reason[160] = {0};               // why it must leave
   std::uint32_t message_bytes_max = 0;  // largest message the client accepts
   int address = -1;                     // index of the server's account for its address
+  std::uint64_t seated_ns = 0;          // since when it has its place
   Account account;
   std::uint64_t ended_took_ns = 0, ended_sent_ns = 0, ended_build_ns = 0;  // of finished frames not yet accounted for
   std::uint32_t chunk_count = 0;                                           // sent to the client
@@ -154,7 +155,7 @@ void send_error(Session* session, WireError code, std::uint32_t frame);
 
 // True if there is a job.
 inline bool has_job(const Session& session) { return session.job.scene != nullptr; }
-// Ends the job and charges the time of unsent rows as wasted.
+// Ends the job and charges the time of rows that were not sent, or were but a part of those asked for, as wasted.
 void drop_job(Session* session);
 // True if the coarse picture or a chunk of the job is completely traced and may be queued.
 bool has_chunk(const Session& session);

@@ -36,6 +36,12 @@ Lane lane_of(const Account& account) {
   return debt <= kNewcomerNs ? Lane::newcomer : Lane::heavy;
 }
 
+std::uint64_t offence_ns(const Account& account, std::uint64_t more_ns) {
+  const std::uint64_t debt = account.owed_ns + more_ns;
+  const std::uint64_t trusted = std::min(kLightNs, kTrustFactor * account.earned_ns);
+  return debt > std::max(kNewcomerNs, trusted) ? debt : 0;
+}
+
 void note(Lanes* lanes, Account* account, bool waits) {
   const Lane lane = lane_of(*account);
   std::uint64_t floor = lanes->floor_ns[static_cast<int>(lane)];

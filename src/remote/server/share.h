@@ -2,12 +2,12 @@
 // link's clock.
 //
 // There are three lanes. The light lane serves accounts that have been sent light frames, of at most kLightNs, and owe
-// little. The newcomers' lane serves those that have not, until they have used kNewcomerNs. The heavy lane serves the
-// rest: longer frames, rendered but unsent rows, and floods of other requests. While both have work, the light lane
-// gets kBehindPart - 1 of kBehindPart turns, measured in time, and the other two share the rest in the same proportion.
-// The longest-seated newcomer goes first, so those that keep coming back only wait for each other. In the other lanes
-// the account that has used the least CPU goes first [Goyal et al. 1996, start-time fair queueing]; one that was away
-// is credited at most kCreditNs, a new one nothing.
+// little; of frames given up in part, only the part that was sent counts. The newcomers' lane serves those that have
+// not, until they have used kNewcomerNs. The heavy lane serves the rest: longer frames, rendered but unsent rows, and
+// floods of other requests. While both have work, the light lane gets kBehindPart - 1 of kBehindPart turns, measured in
+// time, and the other two share the rest in the same proportion. The longest-seated newcomer goes first, so those that
+// keep coming back only wait for each other. In the other lanes the account that has used the least CPU goes first
+// [Goyal et al. 1996, start-time fair queueing]; one that was away is credited at most kCreditNs, a new one nothing.
 #pragma once
 #include <cstdint>
 
@@ -70,6 +70,8 @@ inline bool is_heavy(const Account& account) { return account.lane == Lane::heav
 inline bool is_proven(const Account& account) { return account.earned_ns > 0; }
 // The lane of an account with what it owes now.
 Lane lane_of(const Account& account);
+// Its debt with `more_ns`, if this is more than its lane allows; 0: it behaves. A frame in progress may yet be light.
+std::uint64_t offence_ns(const Account& account, std::uint64_t more_ns);
 
 // Updates an account before a choice; `waits`: it has work.
 void note(Lanes* lanes, Account* account, bool waits);

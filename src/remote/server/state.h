@@ -1,5 +1,6 @@
-// State of a render server, shared by its files: guests.cpp admits clients, server.cpp handles time-outs and
-// departures, messages.cpp handles messages, work.cpp gives each client its turn, job.cpp renders.
+// State of a render server, shared by its files: guests.cpp admits clients, places.cpp gives them places, server.cpp
+// handles time-outs and departures, messages.cpp handles messages, work.cpp gives each client its turn, job.cpp
+// renders.
 #pragma once
 #include <vector>
 
@@ -91,6 +92,13 @@ void close_guest(Guest* guest);
 void tend_guests(Server* server, bool comes);
 // Drops pending input; false if the peer has closed.
 bool discard_input(MessageStream* messages);
+
+// ---- places.cpp
+
+// Places that an address has.
+int places_of(const Server& server, int address);
+// A free place for a newcomer of that address, or one whose session had to leave; null if there is none.
+Session* find_place(Server* server, int address);
 
 // ---- server.cpp
 
