@@ -12,6 +12,7 @@
 #include <cstring>
 
 #include "import/assimp_parts.h"
+#include "import/broken_faces.h"
 #include "import/exact.h"
 #include "import/import_error.h"
 #include "import/normals.h"

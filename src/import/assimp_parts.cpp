@@ -9,6 +9,7 @@
 #include "base/color.h"
 #include "base/fmath.h"
 #include "base/limit_list.h"
+#include "import/broken_faces.h"
 #include "import/exact.h"
 #include "import/files.h"
 #include "import/image.h"

@@ -103,6 +103,9 @@ void gltf_check_json(const std::string& text);
 // use in errors.
 std::vector<float> gltf_floats(GltfFile* file, int accessor, int components, const char* what,
                                float limit = kCoordinateMax);
+// An attribute of vertices: such a value is NaN instead, unless `strict` is set.
+std::vector<float> gltf_attribute(GltfFile* file, int accessor, int components, const char* what,
+                                  float limit = kCoordinateMax);
 std::vector<std::uint32_t> gltf_uints(GltfFile* file, int accessor, int components, const char* what);
 int gltf_component_count(const GltfFile& file, int accessor);
 std::vector<Vec3> gltf_vec3s(GltfFile* file, int accessor, const char* what, float limit = kCoordinateMax);
