@@ -116,8 +116,9 @@ void change_animation(Viewer* viewer, Renderer* renderer, ViewerLoop* loop) {
   const Scene& scene = renderer->scene;
   if (viewer->animation_presses == 0) return;
   const char* refused = !has(renderer->effects.mask, Effect::animation) ? "N changes the animation, but nothing moves"
-                        : viewer->servers ? "N changes the animation, but not that of servers: start without --server"
-                                          : nullptr;
+                        : scene.animations.empty()
+                            ? "N changes the animation, but the scene is on the servers alone: start with --animation"
+                            : nullptr;
   for (; !refused && viewer->animation_presses > 0; --viewer->animation_presses)
     renderer->animation = renderer->animation == kNone                       ? 0
                           : renderer->animation + 1 < scene.animations.count ? renderer->animation + 1
