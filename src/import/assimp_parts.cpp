@@ -10,10 +10,10 @@
 #include "base/fmath.h"
 #include "base/limit_list.h"
 #include "import/broken_faces.h"
-#include "import/exact.h"
 #include "import/files.h"
 #include "import/image.h"
 #include "import/import_error.h"
+#include "import/origin.h"
 
 namespace pocketray {
 namespace {

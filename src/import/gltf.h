@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "base/limits.h"
-#include "import/exact.h"
 #include "import/files.h"
 #include "import/image.h"
+#include "import/origin.h"
 #include "import/scene_builder.h"
 
 namespace pocketray {

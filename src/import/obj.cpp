@@ -5,7 +5,6 @@
 #include <unordered_map>
 
 #include "base/color.h"
-#include "import/exact.h"
 #include "import/import_error.h"
 #include "import/normals.h"
 #include "import/obj_file.h"
@@ -13,6 +12,7 @@
 #include "import/obj_material.h"
 #include "import/obj_text.h"
 #include "import/polygon.h"
+#include "import/origin.h"
 #include "import/upright.h"
 
 namespace pocketray {
@@ -210,10 +210,17 @@ std::vector<std::uint32_t> find_materials(const ObjFile& file, const std::vector
 
 // The scene's origin in the file's coordinates; zero where the model is near.
 Vec3d choose_origin(const ObjFile& file, const Transform& turn, SceneBuilder* builder) {
-  ExactBox bounds;
-  for (std::size_t i = 0; i < file.positions.size(); i += 3)
-    extend(&bounds, {file.positions[i], file.positions[i + 1], file.positions[i + 2]});
-  return choose_origin(bounds, turn, 2 * (file.positions.size() / 3), builder);  // a mesh has two triangles per vertex
+  const std::size_t count = file.positions.size() / 3;
+  const double* p = file.positions.data();
+  ExactExtent extent;
+  add_points(
+      &extent, count,
+      [&](std::size_t i) {
+        return Vec3d{p[3 * i], p[3 * i + 1], p[3 * i + 2]};
+      },
+      exact(turn),
+      2 * static_cast<double>(count));  // a mesh has two triangles per vertex
+  return turned_back(turn, choose_origin(extent, builder));
 }
 
 }  // namespace
