@@ -107,6 +107,8 @@ std::vector<float> gltf_floats(GltfFile* file, int accessor, int components, con
 std::vector<float> gltf_attribute(GltfFile* file, int accessor, int components, const char* what,
                                   float limit = kCoordinateMax);
 std::vector<std::uint32_t> gltf_uints(GltfFile* file, int accessor, int components, const char* what);
+// Of all buffers. An accessor without a buffer view has no more elements: each vertex that it belongs to takes a byte.
+std::uint64_t gltf_bytes(const GltfFile& file);
 int gltf_component_count(const GltfFile& file, int accessor);
 std::vector<Vec3> gltf_vec3s(GltfFile* file, int accessor, const char* what, float limit = kCoordinateMax);
 

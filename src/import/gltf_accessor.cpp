@@ -153,6 +153,8 @@ Elements dense_elements(GltfFile* file, const tinygltf::Accessor& accessor, int 
   if (accessor.bufferView >= 0)
     return elements_of_view(*file, accessor.bufferView, accessor.byteOffset, accessor.count, accessor.componentType,
                             own, true, what);
+  if (accessor.count > gltf_bytes(*file))
+    fail_import("%s: %zu zeros, more than the model has bytes; export the file again", what, accessor.count);
   Elements e;
   e.count = accessor.count, e.component_type = accessor.componentType, e.component_count = own;
   return e;
@@ -177,6 +179,12 @@ std::vector<float> read_floats(GltfFile* file, int index, int components, const 
 }
 
 }  // namespace
+
+std::uint64_t gltf_bytes(const GltfFile& file) {
+  std::uint64_t bytes = 0;
+  for (const tinygltf::Buffer& buffer : file.model.buffers) bytes += buffer.data.size();
+  return bytes;
+}
 
 int gltf_component_count(const GltfFile& file, int accessor) {
   return component_count(accessor_at(file, accessor, "an attribute").type);
