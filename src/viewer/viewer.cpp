@@ -267,7 +267,8 @@ Status step_scene(Viewer* viewer, Renderer* renderer, ViewerLoop* loop) {
     moved = loop->moved = true;
   }
   viewer->change_mode = viewer->home = false;
-  bool passes = has(renderer->effects.mask, Effect::animation) && !viewer->paused && !shows_side_by_side(*viewer);
+  const bool plays = has(renderer->effects.mask, Effect::animation) && renderer->animation != kNone;
+  const bool passes = plays && !viewer->paused && !shows_side_by_side(*viewer);
   if (passes) {
     loop->seconds += static_cast<double>(elapsed);
     loop->passed = true;
