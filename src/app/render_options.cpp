@@ -48,7 +48,6 @@ std::string numbered_path(const std::string& path, std::uint32_t number) {
 // Refuses pictures that servers cannot send.
 Status check_shareable(const RenderOptions& o, const RenderRequest& request) {
   if (o.servers.addresses.empty()) return success();
-  RETURN_IF_ERROR(check_servers_animation(o.common));
   if (request.aov != Aov::none) return failure("--server sends only colours: drop --server or --aov");
   if (stores_values(request.kind))
     return failure(

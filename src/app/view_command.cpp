@@ -170,7 +170,6 @@ Status check_options(const ViewCommand& o) {
       return failure("%s changes settings per frame and servers cannot: drop %s or --server", option, option);
     if (!o.side_by_side.reference.empty())
       return failure("--side-by-side works only without render servers: drop --side-by-side or --server");
-    RETURN_IF_ERROR(check_servers_animation(o.common));
   }
   if (o.common.scene.empty() && o.view.backend == "null")
     return failure("nothing can be chosen on --screen null: name a SCENE");

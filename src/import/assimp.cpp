@@ -9,12 +9,14 @@
 #include <algorithm>
 #include <assimp/IOStream.hpp>
 #include <assimp/Importer.hpp>
+#include <cmath>
 #include <cstring>
 
 #include "import/assimp_parts.h"
-#include "import/exact.h"
+#include "import/broken_faces.h"
 #include "import/import_error.h"
 #include "import/normals.h"
+#include "import/origin.h"
 #include "import/polygon.h"
 #include "import/upright.h"
 
@@ -138,20 +140,35 @@ Transform transform_of(const aiMatrix4x4& m) {
   return t;
 }
 
-// The bounds of the meshes below a node, and their triangles.
-void measure(const std::vector<MeshData>& meshes, const aiNode& node, const ExactTransform& world, ExactBox* box,
-             std::uint64_t* triangle_count) {
+// Where the meshes below a node lie.
+void measure(const std::vector<MeshData>& meshes, const aiNode& node, const ExactTransform& world,
+             ExactExtent* extent) {
   for (unsigned i = 0; i < node.mNumMeshes; ++i) {
     if (node.mMeshes[i] >= meshes.size()) continue;
     const MeshData& mesh = meshes[node.mMeshes[i]];
-    ExactBox local;
-    for (const Vec3& p : mesh.positions) extend(&local, to_double(p));
-    if (!mesh.positions.empty()) extend(box, world, local);
-    *triangle_count += mesh.indices.size() / 3;
+    add_points(
+        extent, mesh.positions.size(), [&](std::size_t v) { return to_double(mesh.positions[v]); }, world,
+        static_cast<double>(mesh.indices.size() / 3));
   }
   for (unsigned i = 0; i < node.mNumChildren; ++i)
-    measure(meshes, *node.mChildren[i], world * exact(transform_of(node.mChildren[i]->mTransformation)), box,
-            triangle_count);
+    measure(meshes, *node.mChildren[i], world * exact(transform_of(node.mChildren[i]->mTransformation)), extent);
+}
+
+// assimp has floats alone: tells where those of the meshes are too coarse for their shape.
+void note_rounding(const std::vector<MeshData>& meshes, SceneBuilder* builder) {
+  ExactExtent extent;
+  for (const MeshData& mesh : meshes)
+    add_points(
+        &extent, mesh.positions.size(), [&](std::size_t v) { return to_double(mesh.positions[v]); }, ExactTransform(),
+        static_cast<double>(mesh.indices.size() / 3));
+  if (extent.samples.empty() || !is_far(extent.bounds, extent.triangle_count)) return;
+  float most = 0;
+  for (const Vec3d& p : {extent.bounds.low, extent.bounds.high}) most = std::max(most, max_component(abs(to_float(p))));
+  const float step = std::nextafter(most, 2 * most) - most;
+  char told[120];
+  std::snprintf(told, sizeof told, "its coordinates are floats, rounded by up to %.2g; OBJ and PLY keep more digits",
+                static_cast<double>(step) / 2);
+  note_remark(builder, told);
 }
 
 void append_nodes(AssimpReader* reader, std::vector<MeshData>* meshes) {
@@ -163,10 +180,10 @@ void append_nodes(AssimpReader* reader, std::vector<MeshData>* meshes) {
   };
   const aiNode& root = *reader->scene->mRootNode;
   const Transform root_world = reader->upright * transform_of(root.mTransformation);
-  ExactBox bounds;
-  std::uint64_t triangle_count = 0;
-  measure(*meshes, root, exact(root_world), &bounds, &triangle_count);
-  choose_origin(bounds, triangle_count, reader->builder);
+  ExactExtent extent;
+  measure(*meshes, root, exact(root_world), &extent);
+  choose_origin(extent, reader->builder);
+  note_rounding(*meshes, reader->builder);
   std::vector<Visit> stack = {{&root, root_world, exact(root_world), kNone}};
   while (!stack.empty()) {
     Visit visit = stack.back();

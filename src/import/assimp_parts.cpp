@@ -9,10 +9,11 @@
 #include "base/color.h"
 #include "base/fmath.h"
 #include "base/limit_list.h"
-#include "import/exact.h"
+#include "import/broken_faces.h"
 #include "import/files.h"
 #include "import/image.h"
 #include "import/import_error.h"
+#include "import/origin.h"
 
 namespace pocketray {
 namespace {

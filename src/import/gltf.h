@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "base/limits.h"
-#include "import/exact.h"
 #include "import/files.h"
 #include "import/image.h"
+#include "import/origin.h"
 #include "import/scene_builder.h"
 
 namespace pocketray {
@@ -103,7 +103,12 @@ void gltf_check_json(const std::string& text);
 // use in errors.
 std::vector<float> gltf_floats(GltfFile* file, int accessor, int components, const char* what,
                                float limit = kCoordinateMax);
+// An attribute of vertices: such a value is NaN instead, unless `strict` is set.
+std::vector<float> gltf_attribute(GltfFile* file, int accessor, int components, const char* what,
+                                  float limit = kCoordinateMax);
 std::vector<std::uint32_t> gltf_uints(GltfFile* file, int accessor, int components, const char* what);
+// Of all buffers. An accessor without a buffer view has no more elements: each vertex that it belongs to takes a byte.
+std::uint64_t gltf_bytes(const GltfFile& file);
 int gltf_component_count(const GltfFile& file, int accessor);
 std::vector<Vec3> gltf_vec3s(GltfFile* file, int accessor, const char* what, float limit = kCoordinateMax);
 

@@ -1,6 +1,7 @@
 // Accessors (sec. 3.6.2): bounds are checked before an element is read or memory is taken.
 #include <cmath>
 #include <cstring>
+#include <limits>
 
 #include "import/gltf.h"
 #include "import/import_error.h"
@@ -152,31 +153,49 @@ Elements dense_elements(GltfFile* file, const tinygltf::Accessor& accessor, int 
   if (accessor.bufferView >= 0)
     return elements_of_view(*file, accessor.bufferView, accessor.byteOffset, accessor.count, accessor.componentType,
                             own, true, what);
+  if (accessor.count > gltf_bytes(*file))
+    fail_import("%s: %zu zeros, more than the model has bytes; export the file again", what, accessor.count);
   Elements e;
   e.count = accessor.count, e.component_type = accessor.componentType, e.component_count = own;
   return e;
 }
 
-}  // namespace
-
-int gltf_component_count(const GltfFile& file, int accessor) {
-  return component_count(accessor_at(file, accessor, "an attribute").type);
-}
-
-std::vector<float> gltf_floats(GltfFile* file, int index, int components, const char* what, float limit) {
+std::vector<float> read_floats(GltfFile* file, int index, int components, const char* what, float limit, bool strict) {
   const tinygltf::Accessor& accessor = accessor_at(*file, index, what);
   Elements dense = dense_elements(file, accessor, components, what);
   std::vector<float> values(dense.count * static_cast<std::size_t>(components), 0.0f);
   for_each_component(*file, accessor, dense, what, [&](std::size_t element, int c, const std::uint8_t* p) {
     if (c >= components) return;
     float value = float_component(p, accessor.componentType, accessor.normalized);
-    if (!(std::fabs(value) <= limit))
+    const bool is_sound = std::fabs(value) <= limit;
+    if (!is_sound && strict)
       fail_import("%s: element %zu of accessor %d%s is %g, not finite or beyond %g; export the file again", what,
                   element, index, quoted(accessor.name).c_str(), static_cast<double>(value),
                   static_cast<double>(limit));
-    values[element * static_cast<std::size_t>(components) + static_cast<std::size_t>(c)] = value;
+    values[element * static_cast<std::size_t>(components) + static_cast<std::size_t>(c)] =
+        is_sound ? value : std::numeric_limits<float>::quiet_NaN();
   });
   return values;
+}
+
+}  // namespace
+
+std::uint64_t gltf_bytes(const GltfFile& file) {
+  std::uint64_t bytes = 0;
+  for (const tinygltf::Buffer& buffer : file.model.buffers) bytes += buffer.data.size();
+  return bytes;
+}
+
+int gltf_component_count(const GltfFile& file, int accessor) {
+  return component_count(accessor_at(file, accessor, "an attribute").type);
+}
+
+std::vector<float> gltf_floats(GltfFile* file, int index, int components, const char* what, float limit) {
+  return read_floats(file, index, components, what, limit, true);
+}
+
+std::vector<float> gltf_attribute(GltfFile* file, int index, int components, const char* what, float limit) {
+  return read_floats(file, index, components, what, limit, file->builder->options.strict);
 }
 
 std::vector<std::uint32_t> gltf_uints(GltfFile* file, int index, int components, const char* what) {
@@ -195,7 +214,7 @@ std::vector<std::uint32_t> gltf_uints(GltfFile* file, int index, int components,
 }
 
 std::vector<Vec3> gltf_vec3s(GltfFile* file, int accessor, const char* what, float limit) {
-  std::vector<float> values = gltf_floats(file, accessor, 3, what, limit);
+  std::vector<float> values = gltf_attribute(file, accessor, 3, what, limit);
   std::vector<Vec3> result(values.size() / 3);
   for (std::size_t i = 0; i < result.size(); ++i) result[i] = {values[3 * i], values[3 * i + 1], values[3 * i + 2]};
   return result;

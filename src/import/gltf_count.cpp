@@ -12,38 +12,39 @@ struct Count {
 };
 
 // 0 if there is no such accessor, or it says more than its bytes can hold: reading it tells what is wrong.
-double accessor_count(const tinygltf::Model& model, int index) {
+double accessor_count(const GltfFile& file, int index) {
+  const tinygltf::Model& model = file.model;
   if (index < 0 || static_cast<std::size_t>(index) >= model.accessors.size()) return 0;
   const tinygltf::Accessor& accessor = model.accessors[static_cast<std::size_t>(index)];
   const bool has_bytes =
       accessor.bufferView >= 0 && static_cast<std::size_t>(accessor.bufferView) < model.bufferViews.size();
-  if (has_bytes && accessor.count > model.bufferViews[static_cast<std::size_t>(accessor.bufferView)].byteLength)
-    return 0;
-  return static_cast<double>(accessor.count);
+  const std::uint64_t bytes =
+      has_bytes ? model.bufferViews[static_cast<std::size_t>(accessor.bufferView)].byteLength : gltf_bytes(file);
+  return accessor.count > bytes ? 0 : static_cast<double>(accessor.count);
 }
 
-Count count_mesh(const tinygltf::Model& model, const tinygltf::Mesh& mesh) {
+Count count_mesh(const GltfFile& file, const tinygltf::Mesh& mesh) {
   Count count;
   for (const tinygltf::Primitive& primitive : mesh.primitives) {
     const bool strip = primitive.mode == TINYGLTF_MODE_TRIANGLE_STRIP || primitive.mode == TINYGLTF_MODE_TRIANGLE_FAN;
     if (!strip && primitive.mode >= 0 && primitive.mode != TINYGLTF_MODE_TRIANGLES) continue;
     const auto position = primitive.attributes.find("POSITION");
     if (position == primitive.attributes.end()) continue;
-    const double vertices = accessor_count(model, position->second);
-    const double corners = primitive.indices >= 0 ? accessor_count(model, primitive.indices) : vertices;
+    const double vertices = accessor_count(file, position->second);
+    const double corners = primitive.indices >= 0 ? accessor_count(file, primitive.indices) : vertices;
     count.vertices += vertices;
     count.triangles += strip ? std::max(corners - 2, 0.0) : corners / 3;
   }
   return count;
 }
 
-double count_instances(const tinygltf::Model& model, const tinygltf::Node& node) {
+double count_instances(const GltfFile& file, const tinygltf::Node& node) {
   const tinygltf::Value* extension = gltf_extension(node.extensions, "EXT_mesh_gpu_instancing");
   if (!extension || !extension->Has("attributes") || !extension->Get("attributes").IsObject()) return 1;
   double count = 0;
   for (const char* name : {"TRANSLATION", "ROTATION", "SCALE"}) {
     const double accessor = gltf_number(extension->Get("attributes"), name, -1);
-    if (accessor >= 0 && accessor < 1e9) count = std::max(count, accessor_count(model, static_cast<int>(accessor)));
+    if (accessor >= 0 && accessor < 1e9) count = std::max(count, accessor_count(file, static_cast<int>(accessor)));
   }
   return count;
 }
@@ -55,8 +56,8 @@ void gltf_count_geometry(const GltfFile& file) {
   for (std::size_t i = 0; i < file.visible_count; ++i) {
     const tinygltf::Node& node = file.model.nodes[static_cast<std::size_t>(file.order[i])];
     if (node.mesh < 0 || static_cast<std::size_t>(node.mesh) >= file.model.meshes.size()) continue;
-    const Count mesh = count_mesh(file.model, file.model.meshes[static_cast<std::size_t>(node.mesh)]);
-    const double instances = count_instances(file.model, node);
+    const Count mesh = count_mesh(file, file.model.meshes[static_cast<std::size_t>(node.mesh)]);
+    const double instances = count_instances(file, node);
     total.vertices += instances * mesh.vertices, total.triangles += instances * mesh.triangles;
   }
   if (total.vertices > kVertexCountMax) fail_import("more than %u vertices; simplify the model", kVertexCountMax);

@@ -4,25 +4,16 @@
 
 #include "import/gltf.h"
 #include "import/import_error.h"
+#include "scene/channel.h"
 
 namespace pocketray {
 namespace {
 
 // Floats of a value in the file.
 std::size_t width_in_file(const GltfFile& file, const GltfTarget& target) {
-  switch (target.path) {
-    case ChannelPath::rotation:
-    case ChannelPath::material_diffuse:  // with opacity
-      return 4;
-    case ChannelPath::weights:
-      return gltf_morph_target_count(file, target.index);
-    case ChannelPath::visibility:
-    case ChannelPath::light_scale:
-    case ChannelPath::camera_size:
-      return 1;
-    default:
-      return 3;
-  }
+  if (target.path == ChannelPath::material_diffuse) return 4;  // with opacity
+  const bool has_weights = target.path == ChannelPath::weights;
+  return channel_width(target.path, has_weights ? gltf_morph_target_count(file, target.index) : 0);
 }
 
 std::size_t values_per_key(const GltfKeys& keys, std::size_t width) {

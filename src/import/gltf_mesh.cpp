@@ -1,7 +1,9 @@
 // Mesh primitives (secs. 3.7.2, 3.7.3).
+#include <algorithm>
 #include <limits>
 
 #include "base/limits.h"
+#include "import/broken_faces.h"
 #include "import/gltf.h"
 #include "import/import_error.h"
 #include "import/tangents.h"
@@ -56,7 +58,7 @@ void read_indices(GltfFile* file, const tinygltf::Primitive& primitive, MeshData
 
 void read_colors(GltfFile* file, int accessor, MeshData* mesh) {
   int components = gltf_component_count(*file, accessor) == 4 ? 4 : 3;
-  std::vector<float> values = gltf_floats(file, accessor, components, "COLOR_0");
+  std::vector<float> values = gltf_attribute(file, accessor, components, "COLOR_0");
   std::size_t n = static_cast<std::size_t>(components);
   require_count(values.size() / n, mesh->positions.size(), "COLOR_0");
   bool colored = false;
@@ -78,10 +80,13 @@ void read_uvs(GltfFile* file, const tinygltf::Primitive& primitive, int set, con
     note_remark(file->builder, "a mesh lacks TEXCOORD_" + std::to_string(set) + ", which its material uses");
     return;
   }
-  std::vector<float> values = gltf_floats(file, accessor, 2, "TEXCOORD");
+  std::vector<float> values = gltf_attribute(file, accessor, 2, "TEXCOORD");
   require_count(values.size() / 2, mesh.positions.size(), "TEXCOORD");
   uvs->resize(mesh.positions.size());
-  for (std::size_t i = 0; i < uvs->size(); ++i) (*uvs)[i] = {values[2 * i], values[2 * i + 1]};
+  for (std::size_t i = 0; i < uvs->size(); ++i) {
+    const Vec2 place = {values[2 * i], values[2 * i + 1]};
+    (*uvs)[i] = is_coordinate({place.x, place.y, 0}) ? place : Vec2{0, 0};
+  }
 }
 
 // Tangents of the file where the material needs some (sec. 3.7.2.1); zero where one is along the normal or has no
@@ -115,7 +120,7 @@ void read_skin_weights(GltfFile* file, const tinygltf::Primitive& primitive, Mes
   if (joints < 0 || weights < 0) return;
   if (attribute(primitive, "JOINTS_1") >= 0) note_unused(file->builder, "more than four joints per vertex");
   std::vector<std::uint32_t> joint = gltf_uints(file, joints, 4, "JOINTS_0");
-  std::vector<float> weight = gltf_floats(file, weights, 4, "WEIGHTS_0");
+  std::vector<float> weight = gltf_attribute(file, weights, 4, "WEIGHTS_0");
   require_count(joint.size() / 4, mesh->positions.size(), "JOINTS_0");
   require_count(weight.size() / 4, mesh->positions.size(), "WEIGHTS_0");
   mesh->skin_weights.resize(mesh->positions.size());
@@ -152,6 +157,9 @@ void read_morph_targets(GltfFile* file, const tinygltf::Primitive& primitive, Me
       std::vector<Vec3> deltas(count, Vec3{0, 0, 0});
       if (found != target.end()) deltas = gltf_vec3s(file, found->second, "a morph target");
       require_count(deltas.size(), count, "a morph target");
+      if (is_normal)
+        std::replace_if(
+            deltas.begin(), deltas.end(), [](const Vec3& d) { return !is_finite(d); }, Vec3{0, 0, 0});
       list->insert(list->end(), deltas.begin(), deltas.end());
     }
   }
@@ -180,6 +188,7 @@ MeshData read_primitive(GltfFile* file, const tinygltf::Primitive& primitive, co
   if (attribute(primitive, "COLOR_1") >= 0) note_unused(file->builder, "second vertex colours");
   read_skin_weights(file, primitive, &mesh);
   read_morph_targets(file, primitive, &mesh);
+  leave_out_broken_faces(&mesh, file->builder);
   tidy_mesh(&mesh);
   return mesh;
 }

@@ -157,8 +157,8 @@ void gltf_visit_nodes(GltfFile* file) {
   }
 }
 
-// The bounds of a mesh's primitives by what the file says of them.
-static void measure_mesh(const GltfFile& file, int index, ExactBox* box, std::uint64_t* triangle_count) {
+// Adds the bounds of a mesh's primitives, as the file states them, by their corners.
+static void measure_mesh(const GltfFile& file, int index, const ExactTransform& world, ExactExtent* extent) {
   if (index < 0 || static_cast<std::size_t>(index) >= file.model.meshes.size()) return;
   const auto& accessors = file.model.accessors;
   for (const tinygltf::Primitive& primitive : file.model.meshes[static_cast<std::size_t>(index)].primitives) {
@@ -166,23 +166,24 @@ static void measure_mesh(const GltfFile& file, int index, ExactBox* box, std::ui
     if (found == primitive.attributes.end() || static_cast<std::size_t>(found->second) >= accessors.size()) continue;
     const tinygltf::Accessor& positions = accessors[static_cast<std::size_t>(found->second)];
     if (positions.minValues.size() < 3 || positions.maxValues.size() < 3) continue;
-    extend(box, {positions.minValues[0], positions.minValues[1], positions.minValues[2]});
-    extend(box, {positions.maxValues[0], positions.maxValues[1], positions.maxValues[2]});
+    auto corner = [&](std::size_t i) {
+      auto side = [&](std::size_t c) { return (i >> c & 1 ? positions.maxValues : positions.minValues)[c]; };
+      return Vec3d{side(0), side(1), side(2)};
+    };
     const bool has_indices = static_cast<std::size_t>(primitive.indices) < accessors.size();
-    *triangle_count += (has_indices ? accessors[static_cast<std::size_t>(primitive.indices)] : positions).count / 3;
+    const std::size_t corners =
+        (has_indices ? accessors[static_cast<std::size_t>(primitive.indices)] : positions).count;
+    add_points(extent, 8, corner, world, static_cast<double>(corners / 3));
   }
 }
 
 void gltf_recentre(GltfFile* file) {
-  ExactBox bounds;
-  std::uint64_t triangle_count = 0;
+  ExactExtent extent;
   for (std::size_t i = 0; i < file->visible_count; ++i) {
     const GltfNode& node = file->nodes[static_cast<std::size_t>(file->order[i])];
-    ExactBox mesh;
-    measure_mesh(*file, file->model.nodes[static_cast<std::size_t>(file->order[i])].mesh, &mesh, &triangle_count);
-    if (mesh.low.x <= mesh.high.x) extend(&bounds, node.world_exactly, mesh);
+    measure_mesh(*file, file->model.nodes[static_cast<std::size_t>(file->order[i])].mesh, node.world_exactly, &extent);
   }
-  const Vec3d origin = choose_origin(bounds, triangle_count, file->builder);
+  const Vec3d origin = choose_origin(extent, file->builder);
   if (file->builder->out->origin.empty()) return;
   for (int index : file->order) {
     GltfNode& node = file->nodes[static_cast<std::size_t>(index)];

@@ -21,6 +21,23 @@ bool is_gltf(const std::string& ending, const Bytes& bytes) {
   return ending == "gltf" || ending == "glb" || (bytes.size() >= 4 && std::memcmp(bytes.data(), "glTF", 4) == 0);
 }
 
+// Runs read(builder) in a child process and takes the scene that it makes.
+template <class Read>
+void read_contained(const ContainerLimits& limits, const std::string& path, const ImportOptions& options, Read read,
+                    ImportedScene* result) {
+  import_contained(
+      limits,
+      [&](ImportedScene* imported) {
+        SceneBuilder builder;
+        builder.options = options;
+        builder.files.root = options.root;
+        note_file(&builder.files, path);
+        read(&builder);
+        finish_scene(&builder, path_stem(path), imported);
+      },
+      result);
+}
+
 // Assimp's many readers trust their files and may crash, so they run in a child process. The glTF, OBJ and PLY readers
 // run in place, with checks before and after that are fuzzed.
 void import_by_assimp(const std::string& path, const std::string& ending, const Bytes& bytes,
@@ -31,17 +48,8 @@ void import_by_assimp(const std::string& path, const std::string& ending, const 
   // A machine busy with other work may take ten times as long.
   const ContainerLimits limits = {memory_bytes, options.cpu_seconds_max, 10 * options.cpu_seconds_max,
                                   2 * options.byte_count_max};
-  import_contained(
-      limits,
-      [&](ImportedScene* imported) {
-        SceneBuilder builder;
-        builder.options = options;
-        builder.files.root = options.root;
-        note_file(&builder.files, path);
-        import_assimp(path, ending, bytes, &builder);
-        finish_scene(&builder, path_stem(path), imported);
-      },
-      result);
+  read_contained(
+      limits, path, options, [&](SceneBuilder* builder) { import_assimp(path, ending, bytes, builder); }, result);
 }
 
 // Draco's decoder trusts the counts in its data, so it runs in a child process, too.
@@ -52,17 +60,8 @@ bool names_draco(const Bytes& bytes) {
 void import_by_draco(const std::string& path, const Bytes& bytes, const ImportOptions& options, ImportedScene* result) {
   const ContainerLimits limits = {2 * options.byte_count_max + (std::uint64_t(256) << 20), options.cpu_seconds_max,
                                   10 * options.cpu_seconds_max, 2 * options.byte_count_max};
-  import_contained(
-      limits,
-      [&](ImportedScene* imported) {
-        SceneBuilder builder;
-        builder.options = options;
-        builder.files.root = options.root;
-        note_file(&builder.files, path);
-        import_gltf(path, bytes, &builder);
-        finish_scene(&builder, path_stem(path), imported);
-      },
-      result);
+  read_contained(
+      limits, path, options, [&](SceneBuilder* builder) { import_gltf(path, bytes, builder); }, result);
 }
 
 void import_any(const std::string& path, const ImportOptions& options, ImportedScene* result) {

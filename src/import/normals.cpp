@@ -61,20 +61,25 @@ std::vector<Corner> measure_corners(const MeshData& mesh, const std::vector<std:
   return corners;
 }
 
-// The corner's normal among all corners at its position.
+bool is_other_plane(const Vec3d& normal, const Vec3d& own) {
+  const Vec3d d = normal - own;
+  return dot(d, d) > kSameNormal * kSameNormal && !is_zero(normal);
+}
+
+// The corner's normal among all corners at its position, and among normals from elsewhere.
 Vec3d corner_normal(const std::vector<Corner>& corners, std::uint32_t self, const std::uint32_t* around,
-                    std::size_t count, double cos_crease, bool* flat) {
+                    std::size_t count, double cos_crease, const Vec3d& elsewhere, bool* flat) {
   const Vec3d& own = corners[self].normal;
   const std::uint32_t group = corners[self].group;
   if (group == kFlatGroup) return own;
-  Vec3d sum = {0, 0, 0};
+  Vec3d sum = elsewhere;
+  if (is_other_plane(normalize(elsewhere), own)) *flat = false;
   for (std::size_t i = 0; i < count; ++i) {
     const Corner& other = corners[around[i]];
     if (other.group != group) continue;
     if (group == kNoGroup && count <= kValenceMax && dot(own, other.normal) < cos_crease) continue;
     sum += other.normal * other.angle;
-    Vec3d d = other.normal - own;
-    if (dot(d, d) > kSameNormal * kSameNormal && !is_zero(other.normal)) *flat = false;
+    if (is_other_plane(other.normal, own)) *flat = false;
   }
   Vec3d mean = normalize(sum);
   return is_zero(mean) ? own : mean;
@@ -115,7 +120,8 @@ void assign(MeshData* mesh, const std::vector<Vec3>& normals) {
 
 }  // namespace
 
-void smooth_normals(MeshData* mesh, float crease_degrees, const std::vector<std::uint32_t>* groups) {
+void smooth_normals(MeshData* mesh, float crease_degrees, const std::vector<std::uint32_t>* groups,
+                    const NormalsElsewhere& elsewhere) {
   CHECK(!groups || groups->size() == mesh->indices.size() / 3);
   std::vector<std::uint32_t> first = weld(mesh->positions);
   std::vector<Corner> corners = measure_corners(*mesh, groups);
@@ -131,9 +137,9 @@ void smooth_normals(MeshData* mesh, float crease_degrees, const std::vector<std:
   std::vector<Vec3> normals(corners.size());
   for (std::uint32_t c = 0; c < corners.size(); ++c) {
     std::uint32_t position = first[mesh->indices[c]];
-    Vec3d n =
-        corner_normal(corners, c, &around[begin[position]], begin[position + 1] - begin[position], cos_crease, &flat);
-    normals[c] = to_float(n);
+    const Vec3d more = elsewhere ? elsewhere(mesh->indices[c], corners[c].group) : Vec3d{0, 0, 0};
+    normals[c] = to_float(corner_normal(corners, c, &around[begin[position]], begin[position + 1] - begin[position],
+                                        cos_crease, more, &flat));
   }
   mesh->normals.clear();
   if (!flat) assign(mesh, normals);

@@ -1,5 +1,7 @@
 // Normals for meshes without any.
 #pragma once
+#include <functional>
+
 #include "import/scene_builder.h"
 
 namespace pocketray {
@@ -10,6 +12,10 @@ namespace pocketray {
 // no normals.
 // `groups`, one per triangle, are OBJ's smoothing groups (obj_file.h): triangles of one group are smoothed at any
 // angle, those of kFlatGroup not at all, and those of kNoGroup as above; none are smoothed with another group's.
-void smooth_normals(MeshData* mesh, float crease_degrees, const std::vector<std::uint32_t>* groups = nullptr);
+// `elsewhere(vertex, group)`: the sum of further normals around a vertex of the mesh that belong to a group, weighted
+// by angle.
+using NormalsElsewhere = std::function<Vec3d(std::uint32_t vertex, std::uint32_t group)>;
+void smooth_normals(MeshData* mesh, float crease_degrees, const std::vector<std::uint32_t>* groups = nullptr,
+                    const NormalsElsewhere& elsewhere = nullptr);
 
 }  // namespace pocketray

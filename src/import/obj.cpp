@@ -5,13 +5,14 @@
 #include <unordered_map>
 
 #include "base/color.h"
-#include "import/exact.h"
 #include "import/import_error.h"
 #include "import/normals.h"
 #include "import/obj_file.h"
 #include "import/obj_lookup.h"
 #include "import/obj_material.h"
+#include "import/obj_surfaces.h"
 #include "import/obj_text.h"
+#include "import/origin.h"
 #include "import/polygon.h"
 #include "import/upright.h"
 
@@ -129,6 +130,11 @@ class CornerIndex {
     return made;
   }
 
+  // Of a vertex of the mesh, an index into the file's; kNoElement where polygons cross themselves.
+  std::int32_t position(std::uint32_t vertex) const {
+    return vertex < corners_.size() ? corners_[vertex].position : kNoElement;
+  }
+
  private:
   const ObjFile& file_;
   Vec3d origin_;
@@ -192,6 +198,18 @@ MeshData shape_mesh(const ObjShape& shape, const ObjFile& file, const std::vecto
   return mesh;
 }
 
+// Gives the mesh of a shape normals where the file has none.
+void smooth(const ObjFile& file, const ObjSurfaces& surfaces, std::size_t shape, const CornerIndex& index,
+            const std::vector<std::uint32_t>& groups, float crease_angle, MeshData* mesh) {
+  if (!mesh->normals.empty()) return;
+  if (!file.has_groups) return smooth_normals(mesh, crease_angle);
+  smooth_normals(mesh, crease_angle, &groups, [&](std::uint32_t vertex, std::uint32_t group) {
+    const std::int32_t position = index.position(vertex);
+    if (position == kNoElement) return Vec3d{0, 0, 0};
+    return surfaces.normals_elsewhere(static_cast<std::size_t>(position), shape, group);
+  });
+}
+
 // The scene's materials by the file's names, and behind them the one of faces without a name.
 std::vector<std::uint32_t> find_materials(const ObjFile& file, const std::vector<MtlMaterial>& materials,
                                           std::uint32_t default_material, SceneBuilder* builder) {
@@ -210,10 +228,17 @@ std::vector<std::uint32_t> find_materials(const ObjFile& file, const std::vector
 
 // The scene's origin in the file's coordinates; zero where the model is near.
 Vec3d choose_origin(const ObjFile& file, const Transform& turn, SceneBuilder* builder) {
-  ExactBox bounds;
-  for (std::size_t i = 0; i < file.positions.size(); i += 3)
-    extend(&bounds, {file.positions[i], file.positions[i + 1], file.positions[i + 2]});
-  return choose_origin(bounds, turn, 2 * (file.positions.size() / 3), builder);  // a mesh has two triangles per vertex
+  const std::size_t count = file.positions.size() / 3;
+  const double* p = file.positions.data();
+  ExactExtent extent;
+  add_points(
+      &extent, count,
+      [&](std::size_t i) {
+        return Vec3d{p[3 * i], p[3 * i + 1], p[3 * i + 2]};
+      },
+      exact(turn),
+      2 * static_cast<double>(count));  // a mesh has two triangles per vertex
+  return turned_back(turn, choose_origin(extent, builder));
 }
 
 }  // namespace
@@ -234,12 +259,14 @@ void import_obj(const std::string& path, Bytes bytes, SceneBuilder* builder) {
   if (file.has_points) note_unused(builder, "points");
   for (const std::string& statement : file.unknown) note_unused(builder, "'" + statement.substr(0, 40) + "'");
   CornerIndex index(file, origin);
+  const ObjSurfaces surfaces(file);
   bool default_used = false;
-  for (const ObjShape& shape : file.shapes) {
+  for (std::size_t s = 0; s < file.shapes.size(); ++s) {
+    const ObjShape& shape = file.shapes[s];
     std::vector<std::uint32_t> groups;
     MeshData mesh = shape_mesh(shape, file, materials, &index, builder, &groups);
     for (std::uint32_t material : mesh.triangle_materials) default_used |= material == default_material;
-    if (mesh.normals.empty()) smooth_normals(&mesh, builder->options.crease_angle, file.has_groups ? &groups : nullptr);
+    smooth(file, surfaces, s, index, groups, builder->options.crease_angle, &mesh);
     tidy_mesh(&mesh);
     begin_part(builder, shape.name);
     append_mesh(builder, mesh, turn);

@@ -18,6 +18,7 @@
 #include "base/fmath.h"
 #include "base/limits.h"
 #include "brdf/brdf_list.h"
+#include "import/broken_faces.h"
 #include "import/files.h"
 #include "import/image.h"
 #include "import/import_error.h"

@@ -6,11 +6,11 @@
 #include "base/check.h"
 #include "base/color.h"
 #include "base/limits.h"
-#include "import/exact.h"
 #include "import/image.h"
 #include "import/import_error.h"
 #include "import/normals.h"
 #include "import/obj_lookup.h"
+#include "import/origin.h"
 #include "import/ply_faces.h"
 #include "import/ply_file.h"
 #include "import/upright.h"
@@ -133,7 +133,8 @@ void read_vertices(const PlyElement& element, const Transform& turn, SceneBuilde
     checked(values, kRed, kFloatMax, "colour", i, strict);
     mesh->colors.push_back(color_of(values));
   }
-  recentre(exactly, turn, 2 * element.count, builder, &mesh->positions);  // a mesh has two triangles per vertex
+  recentre(exactly, turn, 2 * static_cast<double>(element.count), builder,
+           &mesh->positions);  // a mesh has two triangles per vertex
 }
 
 // The vertices of a face or strip as they come, with kNone for the -1 that restarts a strip.

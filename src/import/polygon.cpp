@@ -5,6 +5,7 @@
 
 #include "base/check.h"
 #include "base/fmath.h"
+#include "import/broken_faces.h"
 #include "import/planar_sweep.h"
 
 namespace pocketray {

@@ -5,8 +5,9 @@
 
 #include "base/check.h"
 #include "base/limits.h"
-#include "import/exact.h"
+#include "import/broken_faces.h"
 #include "import/import_error.h"
+#include "import/origin.h"
 #include "import/tangents.h"
 #include "scene/animate.h"
 #include "scene/baked.h"
@@ -29,10 +30,6 @@ void require_bytes(const SceneBuilder& builder, std::uint64_t count, std::uint64
 void charge_bytes(SceneBuilder* builder, std::uint64_t bytes, const char* what) {
   require_bytes(*builder, bytes, 1, what);
   builder->bytes_charged += bytes;
-}
-
-bool is_coordinate(const Vec3& p) {
-  return std::fabs(p.x) <= kCoordinateMax && std::fabs(p.y) <= kCoordinateMax && std::fabs(p.z) <= kCoordinateMax;
 }
 
 void require_invertible(const Transform& t, const std::string& name) {
@@ -118,20 +115,25 @@ static std::uint64_t vertex_bytes(const SceneArrays& out, const MeshData& mesh) 
          (has_tangents ? (end - out.tangents.size()) * sizeof(PackedTangent) : 0);
 }
 
-static void require_coordinate(const Vec3& p, const std::string& mesh_name) {
-  if (!is_coordinate(p))
-    fail_import("%.100s: a vertex is at (%g, %g, %g), not finite or beyond %g; scale the model down", mesh_name.c_str(),
-                static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z),
-                static_cast<double>(kCoordinateMax));
-}
-
-void require_finite(const Vec3& p, const std::string& mesh_name, const SceneBuilder& builder) {
-  if (builder.options.strict) require_coordinate(p, mesh_name);
+static std::vector<Vec3> placed_vertices(const SceneBuilder& builder, const MeshData& mesh, const Transform& to_world,
+                                         const ExactTransform* exactly) {
+  const bool is_recentred = exactly && !builder.out->origin.empty();
+  const Vec3d origin = origin_of(builder);
+  std::vector<Vec3> placed;
+  placed.reserve(mesh.positions.size());
+  for (const Vec3& p : mesh.positions)
+    placed.push_back(is_recentred ? to_float(transform_point(*exactly, to_double(p)) - origin)
+                                  : transform_point(to_world, p));
+  return placed;
 }
 
 void append_mesh(SceneBuilder* builder, const MeshData& mesh, const Transform& to_world,
                  const ExactTransform* exactly) {
   SceneArrays& out = *builder->out;
+  const std::vector<Vec3> placed = placed_vertices(*builder, mesh, to_world, exactly);
+  MeshData kept;
+  const MeshData& usable = without_broken_faces(mesh, placed, builder, &kept);
+  if (&usable != &mesh) return append_mesh(builder, usable, to_world, exactly);
   std::size_t begin = out.positions.size(), count = mesh.positions.size(), triangle_count = mesh.indices.size() / 3;
   if (count == 0) return;
   charge_bytes(builder, vertex_bytes(out, mesh) + triangle_count * sizeof(Triangle), "the geometry");
@@ -139,15 +141,8 @@ void append_mesh(SceneBuilder* builder, const MeshData& mesh, const Transform& t
   if (out.triangles.size() + triangle_count > kTriangleCountMax)
     fail_import("more than %u triangles; simplify the model", kTriangleCountMax);
 
-  const bool is_recentred = exactly && !out.origin.empty();
-  const Vec3d origin = origin_of(*builder);
   out.positions.reserve(begin + count > out.positions.capacity() ? std::max(begin + count, begin * 3 / 2) : 0);
-  for (std::size_t i = 0; i < count; ++i) {
-    Vec3 p = is_recentred ? to_float(transform_point(*exactly, to_double(mesh.positions[i])) - origin)
-                          : transform_point(to_world, mesh.positions[i]);
-    require_coordinate(p, mesh.name);
-    out.positions.push_back(p);
-  }
+  out.positions.insert(out.positions.end(), placed.begin(), placed.end());
   std::vector<Vec3> normals(mesh.normals.size());
   NormalTransform normal_to_world = normal_transform(to_world);
   for (std::size_t i = 0; i < normals.size(); ++i) normals[i] = transform_normal(normal_to_world, mesh.normals[i]);
@@ -166,11 +161,14 @@ void append_mesh(SceneBuilder* builder, const MeshData& mesh, const Transform& t
   }
 }
 
-void append_moving_mesh(SceneBuilder* builder, const MeshData& mesh, const Transform& to_world, MovingMesh moving) {
+void append_moving_mesh(SceneBuilder* builder, const MeshData& whole, const Transform& to_world, MovingMesh moving) {
   SceneArrays& out = *builder->out;
+  MeshData kept_at_rest, kept;
+  const MeshData& at_rest = without_broken_faces(whole, whole.positions, builder, &kept_at_rest);
+  const MeshData& mesh =
+      without_broken_faces(at_rest, placed_vertices(*builder, at_rest, to_world, nullptr), builder, &kept);
   std::size_t count = mesh.positions.size();
   if (count == 0) return;
-  for (const Vec3& p : mesh.positions) require_coordinate(p, mesh.name);
   charge_bytes(builder,
                count * (2 * sizeof(Vec3) + sizeof(SkinWeight)) +
                    (mesh.morph_positions.size() + mesh.morph_normals.size()) * sizeof(Vec3),

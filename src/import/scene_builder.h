@@ -102,9 +102,9 @@ std::uint32_t begin_part(SceneBuilder* builder, const std::string& name, std::ui
 // Checks indices and array lengths; removes unused vertices.
 void tidy_mesh(MeshData* mesh);
 
-// Appends the tidied mesh in world space. A mirroring transform flips the winding. A vertex that is not finite or
-// beyond kCoordinateMax is refused. `exactly`: the transform before rounding and before the scene's origin is
-// subtracted, where there is one; null: `to_world` is exact.
+// Appends the tidied mesh in world space. A mirroring transform flips the winding. Faces with a
+// vertex that is not finite or beyond kCoordinateMax there are left out, or refused (broken_faces.h). `exactly`: the
+// transform before rounding and before the scene's origin is subtracted, where there is one; null: `to_world` is exact.
 struct ExactTransform;
 void append_mesh(SceneBuilder* builder, const MeshData& mesh, const Transform& to_world,
                  const ExactTransform* exactly = nullptr);
@@ -125,11 +125,5 @@ inline bool is_textured(const ClearCoat& coat) {
   return coat.strength_texture.texture != kNone || coat.roughness_texture.texture != kNone ||
          coat.normal.texture != kNone;
 }
-
-// With options.strict, throws unless the vertex may be part of a triangle, naming the mesh.
-void require_finite(const Vec3& p, const std::string& mesh_name, const SceneBuilder& builder);
-
-// True if a vertex may be part of a triangle (HARDCASES row 8).
-bool is_coordinate(const Vec3& p);
 
 }  // namespace pocketray

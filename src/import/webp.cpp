@@ -1,5 +1,6 @@
 #include "import/webp.h"
 
+#include <algorithm>
 #include <cstring>
 
 #include "base/limits.h"
@@ -28,6 +29,11 @@ Image decode_webp(const Bytes& bytes, const std::string& name, std::uint64_t tex
   const std::uint64_t count = std::uint64_t(image.width) * image.height;
   if (image.width > kTextureSideMax || image.height > kTextureSideMax || count > texel_count_max)
     fail_import("%s is too large; scale it down", name.c_str());
+  // A picture of one colour takes a few bytes, whatever its size: small ones are worth it.
+  constexpr std::uint64_t kAnyFileMax = 1u << 20, kBytePixelsMax = 1u << 13;
+  if (count > std::max(kAnyFileMax, kBytePixelsMax * bytes.size()))
+    fail_import("%s has %d × %d pixels, more than its %zu bytes are worth; export it as PNG", name.c_str(),
+                features.width, features.height, bytes.size());
   image.texels.resize(static_cast<std::size_t>(count));
   if (!WebPDecodeRGBAInto(bytes.data(), bytes.size(), reinterpret_cast<std::uint8_t*>(image.texels.data()),
                           image.texels.size() * 4, features.width * 4))

@@ -81,12 +81,18 @@ void slerp(const float* a, const float* b, double t, double* result) {
 }  // namespace
 
 std::uint32_t channel_width(const Scene& scene, const Channel& channel) {
-  switch (channel.path) {
+  if (channel.path != ChannelPath::weights) return channel_width(channel.path, 0);
+  CHECK_LT(channel.node, scene.nodes.count);
+  return channel_width(channel.path, scene.nodes[channel.node].weight_count);
+}
+
+std::uint32_t channel_width(ChannelPath path, std::uint32_t weight_count) {
+  CHECK(weight_count == 0 || path == ChannelPath::weights);
+  switch (path) {
     case ChannelPath::rotation:
       return 4;
     case ChannelPath::weights:
-      CHECK_LT(channel.node, scene.nodes.count);
-      return scene.nodes[channel.node].weight_count;
+      return weight_count;
     case ChannelPath::visibility:
     case ChannelPath::light_scale:
     case ChannelPath::camera_size:

@@ -58,13 +58,6 @@ Status check_memory(std::size_t wanted, std::size_t free_bytes) {
                  memory_to_take(free_bytes) >> 10);
 }
 
-Status check_servers_animation(const CommonOptions& o) {
-  if (o.animation.empty() || o.animation == kAllAnimations) return success();
-  return failure(
-      "--server plays the scene's default animation: drop --server, or bake the scene with --animation %.60s",
-      o.animation.c_str());
-}
-
 Status change_exposure(float factor, float* exposure) {
   CHECK(exposure != nullptr);
   *exposure *= factor;

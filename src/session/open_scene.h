@@ -41,9 +41,6 @@ inline const Box& subject_of(const OpenScene& opened) {
   return is_empty(opened.source.focus) ? opened.renderer.accel.bounds : opened.source.focus;
 }
 
-// Fails if an animation is chosen that servers, which play the default one, do not know.
-Status check_servers_animation(const CommonOptions& options);
-
 // Multiplies *exposure; fails if the product is out of range.
 Status change_exposure(float factor, float* exposure);
 

@@ -116,8 +116,9 @@ void change_animation(Viewer* viewer, Renderer* renderer, ViewerLoop* loop) {
   const Scene& scene = renderer->scene;
   if (viewer->animation_presses == 0) return;
   const char* refused = !has(renderer->effects.mask, Effect::animation) ? "N changes the animation, but nothing moves"
-                        : viewer->servers ? "N changes the animation, but not that of servers: start without --server"
-                                          : nullptr;
+                        : scene.animations.empty()
+                            ? "N changes the animation, but the scene is on the servers alone: start with --animation"
+                            : nullptr;
   for (; !refused && viewer->animation_presses > 0; --viewer->animation_presses)
     renderer->animation = renderer->animation == kNone                       ? 0
                           : renderer->animation + 1 < scene.animations.count ? renderer->animation + 1
@@ -266,7 +267,8 @@ Status step_scene(Viewer* viewer, Renderer* renderer, ViewerLoop* loop) {
     moved = loop->moved = true;
   }
   viewer->change_mode = viewer->home = false;
-  bool passes = has(renderer->effects.mask, Effect::animation) && !viewer->paused && !shows_side_by_side(*viewer);
+  const bool plays = has(renderer->effects.mask, Effect::animation) && renderer->animation != kNone;
+  const bool passes = plays && !viewer->paused && !shows_side_by_side(*viewer);
   if (passes) {
     loop->seconds += static_cast<double>(elapsed);
     loop->passed = true;

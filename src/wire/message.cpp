@@ -120,7 +120,7 @@ void row_fields(Io& io, FrameRequest* m, std::uint32_t height) {
 
 template <class Io>
 void fields(Io& io, FrameRequest* m) {
-  number(io, &m->frame), hash(io, &m->scene), real(io, &m->seconds, Quantity::seconds);
+  number(io, &m->frame), hash(io, &m->scene), real(io, &m->seconds, Quantity::seconds), number(io, &m->animation);
   choice(io, &m->camera_stated, true);
   count(io, &m->camera_index, Quantity::camera_index);
   fields(io, &m->camera);
@@ -201,6 +201,7 @@ void fields(Io& io, Pong* m) {
 template <class Io>
 void fields(Io& io, ViewQuery* m) {
   hash(io, &m->scene);
+  io.text(m->animation);
   choice(io, &m->camera_stated, true);
   count(io, &m->camera_index, Quantity::camera_index);
   fields(io, &m->camera);
@@ -210,6 +211,8 @@ void fields(Io& io, ViewQuery* m) {
 template <class Io>
 void fields(Io& io, ViewEntry* m) {
   hash(io, &m->scene);
+  number(io, &m->animation);
+  for (double* x : {&m->origin.x, &m->origin.y, &m->origin.z}) real(io, x, Quantity::coordinate);
   fields(io, &m->camera);
   real(io, &m->exposure, Quantity::exposure), real(io, &m->frames_per_second, Quantity::frame_rate);
   effects(io, &m->effects), number(io, &m->triangle_count);
@@ -269,14 +272,14 @@ constexpr PayloadSize kPayloadSizes[] = {
     {96, 0},                                         // scene_entry
     {28, 0},                                         // scene_fetch
     {24, kPieceBytesMax},                            // scene_piece
-    {94 + kSettingsBytes, kRunBytes* kRunCountMax},  // frame_request
+    {98 + kSettingsBytes, kRunBytes* kRunCountMax},  // frame_request
     {9, 4 + kChunkBytesMax},                         // row_chunk
     {4, 0},                                          // cancel
     {6, 0},                                          // error
     {8, 0},                                          // ping
     {10, kPingBytesMax},                             // pong
-    {68 + kSettingsBytes, 0},                        // view_query
-    {108, 0},                                        // view_entry
+    {68 + kNameBytes + kSettingsBytes, 0},           // view_query
+    {136, 0},                                        // view_entry
     {41, kRunBytes* kRunCountMax},                   // frame_change
     {2, kChunkBytesMax},                             // coarse_picture
     {6, kChunkBytesMax},                             // light_map

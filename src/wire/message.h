@@ -19,7 +19,7 @@ constexpr int settings_on_wire() {
   return count;
 }
 // Adding a setting to requests adds 1 to the version; for any other change of the format, raise the first number.
-constexpr std::uint16_t kWireVersion = 19 + (settings_on_wire() - 6);
+constexpr std::uint16_t kWireVersion = 20 + (settings_on_wire() - 6);
 constexpr std::uint32_t kHeaderBytes = 8;
 constexpr std::uint32_t kPieceBytesMax = 1u << 16;  // of a scene, per message
 constexpr std::uint32_t kPingBytesMax = 1u << 16;   // of a pong's payload
@@ -97,8 +97,9 @@ enum class RowCoding : std::uint8_t { raw, lossless, near_lossless };
 struct FrameRequest {
   std::uint32_t frame = 0;  // counts up
   ContentHash scene;
-  double seconds = 0;          // of the animation
-  bool camera_stated = false;  // false: the scene's own camera of that index
+  double seconds = 0;           // of the animation
+  std::uint32_t animation = 0;  // index in the scene; kNone: none plays; 0: the default, which every scene has
+  bool camera_stated = false;   // false: the scene's own camera of that index
   std::uint16_t camera_index = 0;
   Camera camera;       // world space; its node is kNone
   Settings settings;   // those that change pixels; the server chooses threads and memory
@@ -199,7 +200,8 @@ struct Pong {
 // What a device without the scene must know about it before it requests frames.
 struct ViewQuery {
   ContentHash scene;
-  bool camera_stated = false;  // as in a FrameRequest
+  char animation[kNameBytes] = {0};  // asked for, as --animation has it; empty: the default
+  bool camera_stated = false;        // as in a FrameRequest
   std::uint16_t camera_index = 0;
   Camera camera;
   Settings settings;
@@ -207,8 +209,10 @@ struct ViewQuery {
 };
 struct ViewEntry {
   ContentHash scene;
-  Camera camera;       // world space, at time 0; its node is kNone
-  float exposure = 1;  // measured by the server on request, otherwise the scene's
+  std::uint32_t animation = 0;     // as in a FrameRequest: what was asked for
+  SceneOrigin origin = {0, 0, 0};  // in the model's own coordinates; those of all cameras count from it
+  Camera camera;                   // world space, at time 0; its node is kNone
+  float exposure = 1;              // measured by the server on request, otherwise the scene's
   float frames_per_second = 1;
   EffectMask effects = 0;  // planned
   std::uint32_t triangle_count = 0;

@@ -2,9 +2,9 @@
 #include <cmath>
 #include <vector>
 
-#include "import/exact.h"
 #include "import/gltf_writer.h"
 #include "import/import_testing.h"
+#include "import/origin.h"
 #include "scene/baked_file.h"
 #include "support/hard_case.h"
 
@@ -74,8 +74,11 @@ std::string gltf(const std::string& nodes) {
   w.indices(corners);
   w.floats({0, 1});
   w.vec3s({431250.5f, 120, 5411875, 431251.5f, 120, 5411875});
+  w.add(std::vector<float>{0, 0, 0, 1, 0, 0, 0, 1, 0}, "VEC3", 3, 5126, ",\"min\":[0,0,0],\"max\":[1,1,0]");
   return w.gltf(
-      "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0},\"indices\":1}]}],\"cameras\":[{\"type\":"
+      "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0},\"indices\":1}]},{\"primitives\":[{\"attributes\":"
+      "{"
+      "\"POSITION\":4}}]}],\"cameras\":[{\"type\":"
       "\"perspective\",\"perspective\":{\"yfov\":0.5,\"znear\":0.1}}]," +
       nodes);
 }
@@ -157,6 +160,85 @@ TEST_CASE("hard_69_gltf_far_from_the_origin_is_bit_equal") {
   check_origin(moving.scene);
   CHECK(std::fabs(moving.scene.key_values[0] - 0.13f) < 1e-3f);
   CHECK(moving.scene.key_values[3] - moving.scene.key_values[0] == 1);
+}
+
+// Goal: HARDCASES row 69 with a stray: a vertex or a small part left at the origin does not keep the rest from it, and
+// what is exact as it is stays so. Method: the grid, one more triangle at the origin; in OBJ, PLY and below glTF's
+// nodes; then the grid at whole numbers, which floats hold, with one.
+TEST_CASE("hard_69_a_stray_part_at_the_origin_does_not_bend_a_far_model") {
+  count_assertions("the model at the origin");
+  TemporaryFolder folder;
+  const Offset zero = {"0", "0", "0"};
+  const std::string stray = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf -3 -2 -1\n";
+  auto with_one = [](std::string text) {  // at the end of the vertices, used by no face
+    text.replace(text.find("vertex 1681"), 11, "vertex 1682");
+    return text.insert(text.find("\n3 0 1 41"), "\n0 0 0");
+  };
+  const struct {
+    const char* name;
+    std::string near, far;
+  } kModels[] = {{"a.obj", obj(zero), obj(kUtm) + stray},
+                 {"a.ply", ply(zero, "double"), with_one(ply(kUtm, "double"))}};
+  for (const auto& model : kModels) {
+    CAPTURE(model.name);
+    const ImportedScene near = load(folder.write(model.name, model.near)),
+                        far = load(folder.write(model.name, model.far));
+    REQUIRE(far.scene.origin.count == 1);
+    CHECK(contains(far.warning, "far from the origin"));
+    double most = 0;
+    for (std::uint32_t v = 0; v < near.scene.positions.count; ++v) {
+      const Vec3d moved = to_double(far.scene.positions[v] - far.scene.positions[0]);
+      most = std::max(most, length(moved - to_double(near.scene.positions[v] - near.scene.positions[0])));
+    }
+    CHECK(most <= 2e-6);
+  }
+  const ImportedScene nodes = load(folder.write(
+      "a.gltf", gltf("\"nodes\":[{\"mesh\":0,\"translation\":[431250.37,120.5,5411875.62]},{\"mesh\":1}],\"scenes\":[{"
+                     "\"nodes\":[0,1]}]")));
+  check_origin(nodes.scene);
+  std::string whole = stray;
+  for (int i = 0; i < 900; ++i)
+    whole +=
+        "v " + std::to_string(5411875 + i % 30) + " " + std::to_string(i % 7) + " " + std::to_string(i / 30) + "\n";
+  for (int i = 0; i < 869; ++i)
+    if (i % 30 < 29)
+      whole += "f " + std::to_string(i + 4) + " " + std::to_string(i + 5) + " " + std::to_string(i + 34) + "\n";
+  CHECK(load(folder.write("whole.obj", whole)).scene.origin.empty());
+}
+
+// Goal: what assimp reads has floats, and far from the origin a message says how coarse they are. Method: the grid as
+// OFF, whose places differ from those at the origin by no more than it says, and by half as much somewhere.
+TEST_CASE("models_read_as_floats_tell_how_coarse_they_are_far_away") {
+  if (!contains(import_formats(), " off")) {
+    std::printf("skipped: built without assimp\n");
+    return;
+  }
+  TemporaryFolder folder;
+  auto off = [&](const Offset& o) {
+    const std::vector<int> points = grid(), corners = faces();
+    std::string text = "OFF\n" + std::to_string(points.size() / 3) + " " + std::to_string(corners.size() / 3) + " 0\n";
+    for (std::size_t i = 0; i < points.size(); i += 3)
+      text += decimal(o.x, points[i]) + " " + decimal(o.y, points[i + 1]) + " " + decimal(o.z, points[i + 2]) + "\n";
+    for (std::size_t i = 0; i < corners.size(); i += 3)
+      text += "3 " + std::to_string(corners[i]) + " " + std::to_string(corners[i + 1]) + " " +
+              std::to_string(corners[i + 2]) + "\n";
+    return load(folder.write("a.off", text));
+  };
+  const ImportedScene near = off({"0", "0", "0"}), far = off(kUtm);
+  CHECK(!contains(near.warning, "rounded"));
+  CHECK_MESSAGE(contains(far.warning, "rounded by up to 0.25; OBJ and PLY keep more digits"), far.warning);
+  REQUIRE(far.scene.origin.count == 1);
+  REQUIRE(far.scene.triangles.count == near.scene.triangles.count);
+  double most = 0;  // of an edge, which has two ends
+  for (std::uint32_t t = 0; t < near.scene.triangles.count; ++t)
+    for (int k = 1; k < 3; ++k) {
+      auto edge = [&](const Scene& s) {
+        return to_double(s.positions[s.triangles[t].vertex(k)] - s.positions[s.triangles[t].vertex(0)]);
+      };
+      most = std::max(most, static_cast<double>(max_component(abs(to_float(edge(far.scene) - edge(near.scene))))));
+    }
+  CHECK(most <= .5);
+  CHECK(most > .1);
 }
 
 // Goal: ordinary models keep their bits: only an offset that bends edges moves them. Method: a grid near the origin,

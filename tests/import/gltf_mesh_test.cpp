@@ -85,6 +85,38 @@ TEST_CASE("gltf_sparse_accessor_replaces_elements") {
   CHECK(imported.scene.positions[2] == Vec3{0, 3, 0});
 }
 
+// Goal: no memory is taken for elements that a few bytes announce. Method: accessors without a buffer view, sparse or
+// not, as positions, as a morph target and as instances; the largest count that a buffer of the same bytes allows.
+TEST_CASE("gltf_elements_without_bytes_are_refused_before_memory_is_taken") {
+  GltfWriter w;
+  w.vec3s({0, 0, 0, 1, 0, 0, 0, 1, 0});
+  w.add<std::uint8_t>({1, 2}, "SCALAR", 1, 5121);
+  w.vec3s({2, 0, 0, 0, 3, 0});
+  auto with = [&](std::size_t count, const std::string& sparse, const std::string& primitive,
+                  const std::string& translation) {
+    GltfWriter made = w;
+    made.accessors +=
+        ",{\"count\":" + std::to_string(count) + ",\"type\":\"VEC3\",\"componentType\":5126" + sparse + "}";
+    return made.gltf("\"meshes\":[{\"primitives\":[" + primitive + "]}],\"nodes\":[{\"mesh\":0" + translation +
+                     "}],\"scenes\":[{\"nodes\":[0]}]");
+  };
+  const std::string few =
+                        ",\"sparse\":{\"count\":2,\"indices\":{\"bufferView\":1,\"componentType\":5121},\"values\":{"
+                        "\"bufferView\":2}}",
+                    instances = ",\"extensions\":{\"EXT_mesh_gpu_instancing\":{\"attributes\":{\"TRANSLATION\":3}}}",
+                    plain = "{\"attributes\":{\"POSITION\":0}}", zeros = "{\"attributes\":{\"POSITION\":3}}",
+                    morph = "{\"attributes\":{\"POSITION\":0},\"targets\":[{\"POSITION\":3}]}";
+  TemporaryFolder folder;
+  for (const std::string& sparse : {std::string(), few})
+    for (const auto& use : {std::make_pair(zeros, std::string()), std::make_pair(morph, std::string()),
+                            std::make_pair(plain, instances)}) {
+      CAPTURE(use.first);
+      const std::string path = folder.write("a.gltf", with(60'000'000, sparse, use.first, use.second));
+      CHECK(contains(load_error(path), "60000000 zeros, more than the model has bytes; export the file again"));
+    }
+  CHECK(load(folder.write("a.gltf", with(64, few, zeros, ""))).scene.triangles.count == 21);
+}
+
 // Goal: vertex colours of every component type and width arrive linear, with 16 bits per channel. Method: the colour
 // (1, 0.5, 0, …) in each.
 TEST_CASE("gltf_vertex_colors_of_all_types_become_linear_16_bit") {
@@ -164,16 +196,16 @@ TEST_CASE("gltf_instances_are_counted_before_they_are_built") {
   std::vector<float> corners;
   for (int i = 0; i < 90; ++i) corners.push_back(static_cast<float>(i * i % 7));
   w.vec3s(corners);
-  w.accessors += ",{\"count\":5000,\"type\":\"VEC3\",\"componentType\":5126}";
+  w.vec3s(std::vector<float>(15000));
   TemporaryFolder folder;
   ImportOptions options;
   options.byte_count_max = 1 << 20;
   const std::string error =
-      load_error(folder.write("a.gltf", w.gltf(mesh_document("{\"attributes\":{\"POSITION\":0}}",
-                                                             "{\"mesh\":0,\"extensions\":{\"EXT_mesh_gpu_instancing\":{"
-                                                             "\"attributes\":{\"TRANSLATION\":1}}}}"))),
+      load_error(folder.write("a.glb", w.glb(mesh_document("{\"attributes\":{\"POSITION\":0}}",
+                                                           "{\"mesh\":0,\"extensions\":{\"EXT_mesh_gpu_instancing\":{"
+                                                           "\"attributes\":{\"TRANSLATION\":1}}}}"))),
                  options);
-  CHECK_MESSAGE(contains(error, "MiB"), error);
+  CHECK_MESSAGE(contains(error, "the geometry would take the scene beyond 1 MiB"), error);
 }
 
 // Goal: EXT_mesh_gpu_instancing places the mesh once for each instance, under the node's own transform.

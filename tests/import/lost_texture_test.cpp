@@ -122,3 +122,27 @@ TEST_CASE("gltf_webp_textures_are_read") {
   std::printf("skipped: this build has no libwebp\n");
 #endif
 }
+
+// Goal: a WebP of a few bytes does not take the memory of 64 million texels. Method: pictures of one colour, which the
+// coding makes as short; a small one is shown.
+TEST_CASE("gltf_webp_of_one_colour_takes_no_more_memory_than_it_is_worth") {
+#ifdef POCKETRAY_HAVE_WEBP
+  TemporaryFolder folder;
+  for (int side : {512, 8192}) {
+    const std::vector<std::uint32_t> texels(std::size_t(side) * std::size_t(side), 0xFF8040FFu);
+    std::uint8_t* encoded = nullptr;
+    const std::size_t size =
+        WebPEncodeLosslessRGBA(reinterpret_cast<const std::uint8_t*>(texels.data()), side, side, 4 * side, &encoded);
+    REQUIRE(size > 0);
+    const std::vector<std::uint8_t> bytes(encoded, encoded + size);
+    WebPFree(encoded);
+    CAPTURE(bytes.size());
+    const ImportedScene imported =
+        load(folder.write("a.gltf", with_image("data:image/webp;base64," + base64(bytes), kRed)));
+    CHECK((imported.scene.textures.count == 1) == (side == 512));
+    CHECK(contains(imported.warning, "8192 × 8192 pixels, more than its") == (side == 8192));
+  }
+#else
+  std::printf("skipped: this build has no libwebp\n");
+#endif
+}

@@ -198,3 +198,39 @@ TEST_CASE("obj_smoothing_groups_are_kept") {
   CHECK(roof(".27", "s 1\n", "s off\n").scene.normals.empty());
   CHECK(roof(".27", "", "s 1\n").scene.normals.empty());
 }
+
+// Goal: a smoothing group goes on across `g` and `o` where faces use one vertex line; surfaces that merely touch stay
+// apart, as do other groups and faces before any `s`. Method: a folded strip of three squares and a fan of triangles,
+// each face in a shape of its own; normals as without `g`.
+TEST_CASE("obj_smoothing_groups_go_on_across_shapes") {
+  TemporaryFolder folder;
+  auto normals = [&](const std::string& text) {
+    const ImportedScene imported = load(folder.write("a.obj", text));
+    std::vector<std::pair<Vec3, Vec3>> list;  // places and normals
+    for (std::uint32_t v = 0; v < imported.scene.normals.count; ++v)
+      list.emplace_back(imported.scene.positions[v], imported.scene.normals[v]);
+    return list;
+  };
+  const std::string points = "v -1 0 0\nv 0 0 1\nv 1 0 0\nv 2 0 3\nv -1 1 0\nv 0 1 1\nv 1 1 0\nv 2 1 3\nv 0 3 2\n";
+  const std::vector<std::string> faces = {"f 1 2 6 5\n", "f 2 3 7 6\n", "f 3 4 8 7\n", "f 5 6 9\n", "f 6 7 9\n"};
+  auto in_shapes = [&](const std::string& first, const std::string& word) {
+    std::string text = points + first;
+    for (std::size_t i = 0; i < faces.size(); ++i) text += word + " part" + std::to_string(i) + "\n" + faces[i];
+    return text;
+  };
+  std::string whole = points + "s 1\n";
+  for (const std::string& face : faces) whole += face;
+  const auto expected = normals(whole);
+  REQUIRE(expected.size() == 9);
+  for (const char* word : {"g", "o"}) {
+    const auto got = normals(in_shapes("s 1\n", word));
+    CHECK(got.size() == 18);
+    for (const auto& vertex : got)
+      for (const auto& one : expected)
+        if (one.first == vertex.first) CHECK(length(one.second - vertex.second) < 1e-6f);
+    CHECK(normals(in_shapes("s off\n", word)).empty());
+    CHECK(normals(in_shapes("", word)).empty());
+  }
+  CHECK(normals(points + "s 1\n" + faces[0] + "g b\ns 2\n" + faces[1]).empty());
+  CHECK(normals(points + "s 1\n" + faces[0] + "o b\nv 0 0 1\nv 1 0 0\nv 0 1 1\nv 1 1 0\nf -4 -3 -1 -2\n").empty());
+}

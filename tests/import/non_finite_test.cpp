@@ -1,7 +1,7 @@
 // HARDCASES row 8 at import: a number in a scene file that is invalid, not finite, beyond float or beyond the limit of
-// coordinates is refused with one line that names its place. OBJ, PLY and assimp's formats refuse vertices only with
-// `strict`; without, they leave out the faces. Method, throughout: a valid file, then the same with one
-// number replaced.
+// coordinates is refused with one line that names its place. Numbers of vertices are refused only with `strict`;
+// without, the faces that use them are left out. Method, throughout: a valid file, then the same with one number
+// replaced.
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -9,11 +9,15 @@
 
 #include "import/gltf_writer.h"
 #include "import/import_testing.h"
+#include "scene/baked.h"
 
 using namespace pocketray;
 
 namespace {
 
+const std::string kTexel =
+    "data:image/png;base64,iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mP8z8BQDwAEhQGAhKmMIQAAAABJRU5ErkJg"
+    "gg==";
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN(), kInf = std::numeric_limits<float>::infinity();
 
 std::string replaced(std::string text, const std::string& from, const std::string& to) {
@@ -99,6 +103,86 @@ TEST_CASE("hard_08_faces_with_vertices_that_are_not_finite_are_left_out") {
   CHECK(contains(load_error(folder.write("a.obj", replaced(obj, "6 1 0", "6 1 x"))), "line 6: 'x'"));
   CHECK(contains(load_error(folder.write("a.obj", "v nan 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")),
                  "(1 face is left out, as a vertex is not finite"));
+}
+
+// Goal: likewise for glTF, dense and sparse, static, morphed and skinned. A normal, a texture coordinate, a colour or a
+// weight that is not finite costs no face. Method: two triangles, the second by indices; each attribute spoilt at the
+// last vertex of the second.
+TEST_CASE("hard_08_gltf_faces_with_vertices_that_are_not_finite_are_left_out") {
+  TemporaryFolder folder;
+  struct Attribute {
+    const char* name;
+    std::vector<float> values;
+    const char* type;
+    int components;
+    std::uint32_t triangles_left;
+  };
+  const std::vector<float> around = {0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1};
+  const std::vector<float> weights = {1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0};
+  const std::vector<Attribute> sound = {
+      {"POSITION", {0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0, 2, 0, 0}, "VEC3", 3, 1},
+      {"NORMAL", around, "VEC3", 3, 2},
+      {"TEXCOORD_0", {0, 0, 1, 0, 0, 1, 1, 1, 2, 0}, "VEC2", 2, 2},
+      {"COLOR_0", {1, 1, 1, 1, .5f, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1}, "VEC3", 3, 2},
+      {"TANGENT", {1, 0, 0, 1, 1, 0, 0, 1, 1, 0, 0, 1, 1, 0, 0, 1, 1, 0, 0, 1}, "VEC4", 4, 2},
+      {"WEIGHTS_0", weights, "VEC4", 4, 2},
+      {"morph target", around, "VEC3", 3, 1},
+  };
+  auto write = [&](const std::vector<Attribute>& data, const std::string& node) {
+    GltfWriter w;
+    std::string attributes;
+    for (const Attribute& a : data) w.add(a.values, a.type, a.components, 5126);
+    for (std::size_t i = 0; i + 1 < data.size(); ++i)
+      attributes += "\"" + std::string(data[i].name) + "\":" + std::to_string(i) + ",";
+    const int joints = w.add(std::vector<std::uint8_t>(20, 0), "VEC4", 4, 5121), faces = w.indices({0, 1, 2, 1, 4, 3});
+    return folder.write("a.glb",
+                        w.glb("\"meshes\":[{\"weights\":[0.5],\"primitives\":[{\"attributes\":{" + attributes +
+                              "\"JOINTS_0\":" + std::to_string(joints) + "},\"indices\":" + std::to_string(faces) +
+                              ",\"targets\":[{\"POSITION\":6}],\"material\":0}]}],\"materials\":[{\"normalTexture\":{"
+                              "\"index\":0}}],\"textures\":[{\"source\":0}],\"images\":[{\"uri\":\"" +
+                              kTexel + "\"}],\"skins\":[{\"joints\":[1]}],\"nodes\":[{\"mesh\":0" + node +
+                              "},{}],\"scenes\":[{\"nodes\":[0,1]}]"));
+  };
+  for (const char* node : {"", ",\"skin\":0"}) {
+    CAPTURE(std::string(node));
+    const ImportedScene all = load(write(sound, node));
+    CHECK(all.scene.triangles.count == 2);
+    CHECK_FALSE(contains(all.warning, "left out"));
+    for (std::size_t i = 0; i < sound.size(); ++i)
+      for (float bad : {kNan, kInf, -kInf, 2e18f}) {
+        CAPTURE(std::string(sound[i].name));
+        CAPTURE(bad);
+        std::vector<Attribute> data = sound;
+        data[i].values[data[i].values.size() - 2] = bad;
+        const ImportedScene few = load(write(data, node));
+        CHECK(few.scene.triangles.count == sound[i].triangles_left);
+        CHECK(contains(few.warning, "1 face is left out, as a vertex is not finite") == (sound[i].triangles_left == 1));
+        CHECK(validate_scene(few.scene).ok);
+      }
+  }
+}
+
+// Goal: a vertex that its node takes out of range counts as one that is not finite, in glTF and by assimp. Method: one
+// far vertex of two triangles, still and moved by an animation; two instances count the face twice.
+TEST_CASE("hard_08_faces_that_a_node_takes_out_of_range_are_left_out") {
+  TemporaryFolder folder;
+  for (const char* animation : {"",
+                                ",\"animations\":[{\"samplers\":[{\"input\":2,\"output\":3}],\"channels\":[{"
+                                "\"sampler\":0,\"target\":{\"node\":0,\"path\":\"translation\"}}]}]"}) {
+    GltfWriter w;
+    w.vec3s({0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 1e12f, 0});
+    w.indices({0, 1, 2, 0, 1, 3});
+    w.floats({0, 1});
+    w.vec3s({0, 0, 0, 1, 0, 0});
+    const ImportedScene few = load(folder.write(
+        "a.glb", w.glb("\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0},\"indices\":1}]}],\"nodes\":[{"
+                       "\"mesh\":0,\"scale\":[1,1e10,1]},{\"mesh\":0,\"scale\":[1,2e10,1]}],\"scenes\":[{\"nodes\":["
+                       "0,1]}]" +
+                       std::string(animation))));
+    CHECK(few.scene.triangles.count == 2);
+    CHECK(contains(few.warning, "2 faces are left out, as vertices are not finite"));
+    CHECK(validate_scene(few.scene).ok);
+  }
 }
 
 // Goal: MTL lines, and the numbers of its texture options.
@@ -191,17 +275,13 @@ TEST_CASE("hard_08_gltf_accessor_values_that_are_not_finite_are_refused_by_acces
       {{0, 0, 0, 1, 2, 3}, "VEC3", 3, "EXT_mesh_gpu_instancing"},
       {{0, 0, 1, 0, 0, 1}, "VEC2", 2, "TEXCOORD"},
   };
-  const std::string png =
-      "data:image/"
-      "png;base64,iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mP8z8BQDwAEhQGAhKmMIQAAAABJRU5ErkJg"
-      "gg==";
   const std::string document =
       "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0,\"NORMAL\":1,\"COLOR_0\":2,\"WEIGHTS_0\":3,"
       "\"JOINTS_0\":"
       "11,\"TEXCOORD_0\":10},\"targets\":[{\"POSITION\":4}],\"material\":0}]}],\"materials\":[{"
       "\"pbrMetallicRoughness\":{"
       "\"baseColorTexture\":{\"index\":0}}}],\"textures\":[{\"source\":0}],\"images\":[{\"uri\":\"" +
-      png +
+      kTexel +
       "\"}],\"skins\":[{\"joints\":[1],\"inverseBindMatrices\":5}],\"nodes\":[{\"mesh\":0,\"skin\":0},{},{\"mesh\":0,"
       "\"extensions\":{\"EXT_mesh_gpu_instancing\":{\"attributes\":{\"TRANSLATION\":9}}}}],\"animations\":[{"
       "\"samplers\":[{"

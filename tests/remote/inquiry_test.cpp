@@ -143,6 +143,16 @@ TEST_CASE("inquiry_view_is_what_a_device_would_see") {
       CHECK(entry.effects == renderer->effects.mask);
       CHECK(entry.triangle_count == renderer->scene.triangles.count);
       CHECK(entry.frames_per_second == renderer->scene.info.frames_per_second);
+      CHECK(entry.animation == 0);
+      const std::string numbered = built->scene.animations.count ? "0" : "";
+      for (const std::string& wanted : {std::string("none"), std::string("all"), numbered, std::string("Walk")}) {
+        CAPTURE(wanted);
+        ViewQuery asked = query;
+        std::memcpy(asked.animation, wanted.c_str(), wanted.size() + 1);
+        status = ask_view(&rig.inquiry, asked, &entry);
+        CHECK(status.ok == (wanted != "Walk"));
+        if (status.ok) CHECK(entry.animation == (wanted == "none" ? kNone : 0u));
+      }
       query.camera_index = 77;
       status = ask_view(&rig.inquiry, query, &entry);
       CHECK(!status.ok);

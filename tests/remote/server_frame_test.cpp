@@ -70,8 +70,8 @@ TEST_CASE("server_frames_equal_local_ones") {
   CHECK(server_totals(*rig.server).row_count == 8 * 48 + 2 * 30);
 }
 
-// Goal: every setting that changes pixels takes effect, as does the choice of camera, whatever came before. Method: a
-// scene with all features, selected in turn on one connection; three cameras, one of which moves.
+// Goal: every setting that changes pixels takes effect, as do the choices of camera and animation, whatever came
+// before. Method: a scene with all features, selected in turn on one connection; three cameras, one of which moves.
 TEST_CASE("server_frames_follow_every_setting") {
   auto generated = generate_scene(kAllFeatures, 3);
   generated->cameras.assign(3, generated->cameras[0]);
@@ -149,6 +149,11 @@ TEST_CASE("server_frames_follow_every_setting") {
   check_and_back([](FrameRequest* r) { r->camera_index = 2, r->seconds = 0.6; });
   check_and_back([](FrameRequest* r) { r->camera_index = 2, r->seconds = 0.9; });
   check_and_back([](FrameRequest* r) { r->camera_stated = true, r->camera.eye = {0, 3, 5}; });
+  for (std::uint32_t animation : {0u, kNone, 0u}) {
+    request = plain;
+    request.seconds = 0.6, request.animation = animation;
+    check(request, true);
+  }
   check_and_back([](FrameRequest* r) { r->exposure = 0.2f; });
   request = plain;
   request.camera_index = 2, request.camera_stated = true, request.camera.eye = {0, 3, 5};
@@ -338,8 +343,8 @@ TEST_CASE("server_interrupts_rows_that_take_long") {
 }
 
 // Goal: clients get equal shares of the CPU, whatever they request, and learn the resulting price. Method: two
-// clients of an emulated CPU request frame after frame for 4 s, once they are no newcomers: one small pictures in chunks
-// of a row, the other large ones in chunks of 16 rows. A third that comes later gets no more than its share.
+// clients of an emulated CPU request frame after frame for 4 s, once they are no newcomers: one small pictures in
+// chunks of a row, the other large ones in chunks of 16 rows. A third that comes later gets no more than its share.
 TEST_CASE("server_shares_its_time_fairly") {
   ServerOptions options;
   options.pace.ns_per_pixel = 20'000;

@@ -250,6 +250,7 @@ std::vector<std::uint8_t> rendered_here(const FrameRequest& request, const Scene
   start_renderer(block.data(), block.size(), request.settings, r);
   r->scene = scene;
   r->camera_index = request.camera_index;
+  r->animation = request.animation;
   REQUIRE(plan_renderer(r, SceneStorage(), 0).ok);
   REQUIRE(build_renderer(r).ok);
   if (request.camera_stated) REQUIRE(set_camera(r, request.camera).ok);

@@ -151,6 +151,12 @@ def test_frames(program, folder, device, scenes):
         wanted = rendered(program, folder, "seesaw", "--time", str(turn / 4))
         check(all(abs(a - b) <= 1 for p, i in zip(near.pixels, range(48 * 36)) for a, b in zip(p, wanted[3 * i:3 * i + 3])),
               "near-lossless pixels are off by at most a level")
+    frame += 1
+    picture = device.frame(seesaw, frame=frame, time=.25, animation=2**32 - 1, format=RGB888)
+    check(picture.compare(rendered(program, folder, "seesaw", "--time", ".25", "--animation", "none")), "no animation plays")
+    frame += 1
+    check(not device.frame(seesaw, FRAME_CHANGE, frame=frame, time=3.).compare(rendered(program, folder, "seesaw", "--time", "3")),
+          "a change keeps the choice of animation")
     check(device.encodings == {0, 1}, "every encoding has occurred, not just %s" % device.encodings)
     return frame
 
@@ -158,18 +164,23 @@ def test_frames(program, folder, device, scenes):
 def test_views(device, scenes, rgb, frame):
     cornell = scenes["cornell"]
     fields = device.ask(request(cornell["hash"], VIEW_QUERY), VIEW_ENTRY)
-    values = struct.unpack("<11fIffQI6f", fields[16:])
+    values = struct.unpack("<11fIffQI6f", fields[44:])
     camera = dict(eye=values[0:3], target=values[3:6], up=values[6:9], fov=values[9], extent=values[10], projection=values[11])
     exposure, rate, effects, triangles, low, high = *values[12:16], values[16:19], values[19:22]
+    check(fields[20:44] == bytes(24), "a scene's origin")
     check(fields[:16] == cornell["hash"] and triangles == cornell["triangles"] and exposure > 0 and rate >= 0, "view_entry")
     check(all(a <= b for a, b in zip(low, high)) and effects < 1 << len(EFFECTS), "bounds and effects of a view")
     check(effects >> EFFECTS.index("shadow") & 1 and not effects >> EFFECTS.index("texture") & 1, "cornell has shadows alone")
     check(device.frame(cornell["hash"], frame=frame + 1, stated=1, camera=camera, exposure=exposure).compare(rgb),
           "the scene's camera and exposure, stated")
     fields = device.ask(request(cornell["hash"], VIEW_QUERY, measure=1, stated=1, camera=camera), VIEW_ENTRY)
-    check(struct.unpack("<f", fields[64:68])[0] > 0, "a measured exposure")
+    check(struct.unpack("<f", fields[92:96])[0] > 0, "a measured exposure")
     check(device.error(request(bytes(16), VIEW_QUERY)) == (UNKNOWN_SCENE, 0), "a view of an unknown scene")
     check(device.error(request(cornell["hash"], VIEW_QUERY, index=200)) == (BAD_REQUEST, 0), "a view from no camera")
+    check(device.error(request(cornell["hash"], VIEW_QUERY, wanted=b"Walk")) == (BAD_REQUEST, 0), "a view of no animation")
+    for wanted, index in ((b"", 0), (b"all", 0), (b"0", 0), (b"none", 2**32 - 1)):
+        fields = device.ask(request(scenes["seesaw"]["hash"], VIEW_QUERY, wanted=wanted), VIEW_ENTRY)
+        check(struct.unpack("<I", fields[16:20])[0] == index, "the animation that is asked for by %s" % wanted)
     return frame + 1
 
 
@@ -200,6 +211,7 @@ def test_refusals(device, scenes, frame):
         (request(cube, frame=0), BAD_REQUEST, 0), (request(cube, frame=frame - 1), BAD_REQUEST, frame - 1),
         (request(cube, FRAME_CHANGE, frame=frame, end=37), BAD_REQUEST, frame),
         (request(cube, frame=frame, index=250), BAD_REQUEST, frame),
+        (request(cube, frame=frame, animation=1), BAD_REQUEST, frame),
         (request(cube, frame=frame, stated=1, camera=still), BAD_REQUEST, frame),
         (request(b"\x11" * 16, frame=frame), UNKNOWN_SCENE, frame),
         (request(cube, frame=frame, width=device.side + 1), TOO_LARGE, frame),
@@ -232,7 +244,8 @@ def test_malformed(server, scenes):
     cases = [request(cube, **v) for v in values]
     cases += [request(cube, FRAME_CHANGE, time=nan), request(cube, FRAME_CHANGE, end=8193), request(cube, FRAME_CHANGE, coarse=2)]
     cases += [request(cube, FRAME_CHANGE, order=order) for order in orders]
-    cases += [request(cube, VIEW_QUERY, measure=2), request(cube, VIEW_QUERY, samples=0)]
+    cases += [request(cube, VIEW_QUERY, measure=2), request(cube, VIEW_QUERY, samples=0),
+              request(cube, VIEW_QUERY, wanted=b"a\0b"), request(cube, VIEW_QUERY, wanted=b"a" * 64)]
     cases += [message(SCENE_FETCH, cube + struct.pack("<QI", 0, 65537)), message(SCENE_FETCH, cube + struct.pack("<QI", MASK, 0)),
               message(PING, struct.pack("<II", 1, 65537)), message(ERROR, struct.pack("<HI", 0, 0)),
               message(ERROR, struct.pack("<HI", 8, 0)), message(0), message(18), message(SCENE_LIST, b""),
@@ -246,8 +259,8 @@ def test_malformed(server, scenes):
         check(device.closed(waits=data is cases[0]), "malformed bytes end the connection")
         device.socket.close()
     for data, code in ((good, MALFORMED), (b"GET / HTTP/1.1\r\n\r\n", MALFORMED), (hello(3), WRONG_VERSION),
-                       (message(HELLO, b"PRAY\36\0"), WRONG_VERSION), (hello(30, bytes(234)), WRONG_VERSION),
-                       (message(HELLO, b"PRAY\35\0" + bytes(251)), MALFORMED), (hello(29, b"x"), MALFORMED),
+                       (message(HELLO, b"PRAY\37\0"), WRONG_VERSION), (hello(31, bytes(234)), WRONG_VERSION),
+                       (message(HELLO, b"PRAY\36\0" + bytes(251)), MALFORMED), (hello(30, b"x"), MALFORMED),
                        (message(HELLO, b"pray" + bytes(18)), MALFORMED), (message(HELLO, hello()[8:28] + b"\xff\0"), MALFORMED)):
         device = Device(server.address, greets=False)
         check(device.error(data, data.hex()[:80]) == (code, 0), "first message %s" % data[:16])

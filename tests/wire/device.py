@@ -62,7 +62,7 @@ def message(kind, fields=b""):
     return head + struct.pack("<I", zlib.crc32(head + fields)) + fields
 
 
-def hello(version=29, more=b""):
+def hello(version=30, more=b""):
     return message(HELLO, b"PRAY" + struct.pack("<HHIQH", version, 8192, 1 << 21, 1 << 30, 256) + more)
 
 
@@ -74,7 +74,7 @@ def pack_camera(camera):
                        camera["projection"])
 
 
-DEFAULTS = dict(frame=1, time=0.0, stated=0, index=0, camera=CAMERA, width=48, height=36, samples=1, depth=8, points=4, area_shadows=0, area_irradiance=1,
+DEFAULTS = dict(frame=1, time=0.0, animation=0, wanted=b"", stated=0, index=0, camera=CAMERA, width=48, height=36, samples=1, depth=8, points=4, area_shadows=0, area_irradiance=1,
                 cut_off=0.5, filter=0, normals=0, indirect=0, reconstruction=2, virtual_lights=64, compensation=0, selective=0.0, resolution=0, light_tolerance=0.0625, environment_shadows=32, on=0, off=0, exposure=0.0, dither=0, format=RGB888, first=0, end=None,
                 largest=16, coding=1, coarse=0, pitch=0, order=(), measure=0)
 
@@ -92,8 +92,8 @@ def request(scene, kind=FRAME_REQUEST, **changes):
     if kind == FRAME_CHANGE:
         return message(kind, struct.pack("<Id6f", r["frame"], r["time"], *r["camera"]["eye"], *r["camera"]["target"]) + rows)
     if kind == VIEW_QUERY:
-        return message(kind, scene + view + settings + struct.pack("<B", r["measure"]))
-    return message(kind, struct.pack("<I", r["frame"]) + scene + struct.pack("<d", r["time"]) + view + settings +
+        return message(kind, scene + r["wanted"].ljust(64, b"\0") + view + settings + struct.pack("<B", r["measure"]))
+    return message(kind, struct.pack("<I", r["frame"]) + scene + struct.pack("<dI", r["time"], r["animation"]) + view + settings +
                    struct.pack("<fBBHB", r["exposure"], r["dither"], r["format"], r["largest"], r["coding"]) + rows)
 
 
@@ -110,7 +110,7 @@ class Device:
         if greets:
             self.send(hello())
             kind, fields = self.receive()
-            check(kind == HELLO and fields[:6] == b"PRAY\35\0", "the server says hello first, of version 29")
+            check(kind == HELLO and fields[:6] == b"PRAY\36\0", "the server says hello first, of version 30")
             self.side, self.message_bytes, self.scene_bytes, self.price = struct.unpack("<HIQH", fields[6:])
             check(self.price >= 256, "the hello's price")
 

@@ -222,39 +222,39 @@ TEST_CASE("message_values_out_of_range_are_refused") {
       {MessageType::scene_fetch, 8 + 16, {0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF}},
       {MessageType::scene_piece, 8 + 16, {0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF}},
       {MessageType::frame_request, 8 + 20, {0, 0, 0, 0, 0, 0, 0xF8, 0x7F}},  // seconds
-      {MessageType::frame_request, 8 + 28, {2}},                             // camera stated
-      {MessageType::frame_request, 8 + 31, nan},                             // eye.x
-      {MessageType::frame_request, 8 + 67, infinite},                        // fov
-      {MessageType::frame_request, 8 + 75, {2}},                             // projection
-      {MessageType::frame_request, 8 + 79, {0, 0}},                          // width
-      {MessageType::frame_request, 8 + 79, {1, 0x20}},
-      {MessageType::frame_request, 8 + 81, {0, 0}},  // height
-      {MessageType::frame_request, 8 + 83, {0}},     // samples
-      {MessageType::frame_request, 8 + 83, {17}},
-      {MessageType::frame_request, 8 + 84, {17}},    // depth
-      {MessageType::frame_request, 8 + 85, {0, 0}},  // points
-      {MessageType::frame_request, 8 + 85, {1, 1}},
-      {MessageType::frame_request, 8 + 87, {2}},                           // area shadows
-      {MessageType::frame_request, 8 + 88, {2}},                           // area irradiance
-      {MessageType::frame_request, 8 + 89, nan},                           // cut-off
-      {MessageType::frame_request, 8 + 89, {0, 0, 0x82, 0x42}},            // 65 levels
-      {MessageType::frame_request, 8 + 89, {0, 0, 0x80, 0xBF}},            // −1
-      {MessageType::frame_request, 8 + 93, {5}},                           // filter
-      {MessageType::frame_request, 8 + 94, {2}},                           // normals
-      {MessageType::frame_request, 8 + 95, {kIndirectChoiceCount}},        // indirect
-      {MessageType::frame_request, 8 + 96, {5}},                           // reconstruction
-      {MessageType::frame_request, 8 + 99, {2}},                           // compensation
-      {MessageType::frame_request, 8 + 100, nan},                          // selective
-      {MessageType::frame_request, 8 + more + 109, {0, 0, 0x80, 0xBF}},    // exposure −1
-      {MessageType::frame_request, 8 + more + 100, {1}},                   // an effect that is none, on
-      {MessageType::frame_request, 8 + more + 108, {1}},                   // and off
-      {MessageType::frame_request, 8 + more + 113, {2}},                   // dither
-      {MessageType::frame_request, 8 + more + 114, {2}},                   // format
-      {MessageType::frame_request, 8 + more + 119, {5, 0, 5, 0}},          // no rows
-      {MessageType::frame_request, 8 + more + 121, {0xFF, 0xFF}},          // rows beyond the picture
-      {MessageType::frame_request, 8 + more + 115, {0, 0}},                // chunk rows
-      {MessageType::frame_request, 8 + more + 117, {3}},                   // coding
-      {MessageType::frame_request, 8 + more + 118, {2}},                   // coarse first
+      {MessageType::frame_request, 8 + 32, {2}},                             // camera stated
+      {MessageType::frame_request, 8 + 35, nan},                             // eye.x
+      {MessageType::frame_request, 8 + 71, infinite},                        // fov
+      {MessageType::frame_request, 8 + 79, {2}},                             // projection
+      {MessageType::frame_request, 8 + 83, {0, 0}},                          // width
+      {MessageType::frame_request, 8 + 83, {1, 0x20}},
+      {MessageType::frame_request, 8 + 85, {0, 0}},  // height
+      {MessageType::frame_request, 8 + 87, {0}},     // samples
+      {MessageType::frame_request, 8 + 87, {17}},
+      {MessageType::frame_request, 8 + 88, {17}},    // depth
+      {MessageType::frame_request, 8 + 89, {0, 0}},  // points
+      {MessageType::frame_request, 8 + 89, {1, 1}},
+      {MessageType::frame_request, 8 + 91, {2}},                           // area shadows
+      {MessageType::frame_request, 8 + 92, {2}},                           // area irradiance
+      {MessageType::frame_request, 8 + 93, nan},                           // cut-off
+      {MessageType::frame_request, 8 + 93, {0, 0, 0x82, 0x42}},            // 65 levels
+      {MessageType::frame_request, 8 + 93, {0, 0, 0x80, 0xBF}},            // −1
+      {MessageType::frame_request, 8 + 97, {5}},                           // filter
+      {MessageType::frame_request, 8 + 98, {2}},                           // normals
+      {MessageType::frame_request, 8 + 99, {kIndirectChoiceCount}},        // indirect
+      {MessageType::frame_request, 8 + 100, {5}},                          // reconstruction
+      {MessageType::frame_request, 8 + 103, {2}},                          // compensation
+      {MessageType::frame_request, 8 + 104, nan},                          // selective
+      {MessageType::frame_request, 8 + more + 113, {0, 0, 0x80, 0xBF}},    // exposure −1
+      {MessageType::frame_request, 8 + more + 104, {1}},                   // an effect that is none, on
+      {MessageType::frame_request, 8 + more + 112, {1}},                   // and off
+      {MessageType::frame_request, 8 + more + 117, {2}},                   // dither
+      {MessageType::frame_request, 8 + more + 118, {2}},                   // format
+      {MessageType::frame_request, 8 + more + 123, {5, 0, 5, 0}},          // no rows
+      {MessageType::frame_request, 8 + more + 125, {0xFF, 0xFF}},          // rows beyond the picture
+      {MessageType::frame_request, 8 + more + 119, {0, 0}},                // chunk rows
+      {MessageType::frame_request, 8 + more + 121, {3}},                   // coding
+      {MessageType::frame_request, 8 + more + 122, {2}},                   // coarse first
       {MessageType::frame_change, 8 + 4, {0, 0, 0, 0, 0, 0, 0xF8, 0x7F}},  // seconds
       {MessageType::frame_change, 8 + 12, nan},                            // eye.x
       {MessageType::frame_change, 8 + 36, {2}},                            // coarse first
@@ -270,16 +270,18 @@ TEST_CASE("message_values_out_of_range_are_refused") {
       {MessageType::error, 8, {0, 0}},
       {MessageType::error, 8, {8, 0}},
       {MessageType::ping, 8 + 4, {1, 0, 1, 0}},
-      {MessageType::pong, 8 + 8, {0xFF, 0}},               // price
-      {MessageType::view_query, 8 + 16, {2}},              // camera stated
-      {MessageType::view_query, 8 + 19, nan},              // eye.x
-      {MessageType::view_query, 8 + 67, {0, 0}},           // width
-      {MessageType::view_query, 8 + more + 97, {2}},       // exposure measured
-      {MessageType::view_entry, 8 + 16, infinite},         // eye.x
-      {MessageType::view_entry, 8 + 64, {0, 0, 0, 0}},     // exposure
-      {MessageType::view_entry, 8 + 68, nan},              // frames a second
-      {MessageType::view_entry, 8 + 79, {1}},              // an effect that is none
-      {MessageType::view_entry, 8 + 84, {0, 0, 0, 0x7F}},  // bounds turned over
+      {MessageType::pong, 8 + 8, {0xFF, 0}},                              // price
+      {MessageType::view_query, 8 + 80, {2}},                             // camera stated
+      {MessageType::view_query, 8 + 83, nan},                             // eye.x
+      {MessageType::view_query, 8 + 131, {0, 0}},                         // width
+      {MessageType::view_query, 8 + more + 161, {2}},                     // exposure measured
+      {MessageType::view_query, 8 + 79, {'x'}},                           // an animation's name without end
+      {MessageType::view_entry, 8 + 20, {0, 0, 0, 0, 0, 0, 0xF0, 0x7F}},  // origin
+      {MessageType::view_entry, 8 + 44, infinite},                        // eye.x
+      {MessageType::view_entry, 8 + 92, {0, 0, 0, 0}},                    // exposure
+      {MessageType::view_entry, 8 + 96, nan},                             // frames a second
+      {MessageType::view_entry, 8 + 107, {1}},                            // an effect that is none
+      {MessageType::view_entry, 8 + 112, {0, 0, 0, 0x7F}},                // bounds turned over
   };
   const std::vector<std::uint8_t> tail = {1, 2, 3};
   for (const Edit& edit : edits) {

@@ -33,6 +33,7 @@ inline Message sample_message(MessageType type, Rng* rng, const std::vector<std:
   m.scene_piece.offset = wide() >> 8, m.scene_piece.bytes = bytes;
   FrameRequest* f = &m.frame_request;
   f->frame = next_u32(rng), f->scene = hash, f->seconds = static_cast<double>(real());
+  f->animation = next_u32(rng) % 2 ? kNone : next_u32(rng);
   f->camera_stated = next_u32(rng) % 2 != 0, f->camera_index = narrow() % kCameraCountMax;
   f->camera.eye = {real(), real(), real()}, f->camera.target = {real(), real(), real()}, f->camera.up = {0, real(), 1};
   f->camera.vertical_fov = 1 + next_float(rng), f->camera.vertical_extent = 1 + next_float(rng);
@@ -74,9 +75,11 @@ inline Message sample_message(MessageType type, Rng* rng, const std::vector<std:
   m.pong.id = next_u32(rng), m.pong.pixel_ps = next_u32(rng), m.pong.bytes = bytes;
   ViewQuery* q = &m.view_query;
   q->scene = hash, q->camera_stated = f->camera_stated, q->camera_index = narrow() % kCameraCountMax;
+  std::snprintf(q->animation, kNameBytes, "animation %u", next_u32(rng) % 9);
   q->camera = f->camera, q->settings = f->settings, q->measure_exposure = next_u32(rng) % 2 != 0;
   ViewEntry* v = &m.view_entry;
-  v->scene = hash, v->camera = f->camera, v->exposure = 1 + next_float(rng), v->frames_per_second = 1 + next_float(rng);
+  v->scene = hash, v->animation = f->animation, v->origin = {f->seconds, 5e6, -1}, v->camera = f->camera,
+  v->exposure = 1 + next_float(rng), v->frames_per_second = 1 + next_float(rng);
   v->effects = wide() & kAllEffects, v->triangle_count = next_u32(rng);
   v->bounds = {{-next_float(rng), -1, 0}, {next_float(rng), real() + 100, 1}};
   m.coarse_picture.frame = next_u32(rng), m.coarse_picture.pixels = bytes;

@@ -301,7 +301,7 @@ void begin_client_frame(Client* client, const Renderer& renderer, const FrameSta
   client->arrivals.asked_ns = client_now_ns(*client);
   FrameRequest* q = &client->request;
   ++q->frame;
-  q->scene = client->scene, q->seconds = start.seconds;
+  q->scene = client->scene, q->seconds = start.seconds, q->animation = renderer.animation;
   q->camera_stated = client->options.has_scene ||
                      renderer.camera_overridden;  // without the scene, an animated camera moves as on the server
   q->camera_index = static_cast<std::uint16_t>(renderer.camera_index);

@@ -233,7 +233,7 @@ const char* wire_error_text(WireError code) {
     case WireError::too_large:
       return "the picture is too large for it: use a smaller --size, or serve with more --memory";
     case WireError::bad_request:
-      return "it cannot render with these settings";
+      return "it cannot render with these settings, or the scene lacks the animation or camera asked for";
     case WireError::busy:
       return "it is full: serve with more --clients";
     case WireError::closing:

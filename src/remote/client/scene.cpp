@@ -155,6 +155,16 @@ Status find_view(ConnectedServers* s, const ViewQuery& query) {
   return failure("%s", reasons.c_str());
 }
 
+// The view from --camera, which counts in the model's own coordinates: their origin is what servers know.
+Status find_stated_view(ConnectedServers* s, const std::string& camera, ViewQuery* query) {
+  const bool measures = query->measure_exposure;
+  query->camera_stated = query->measure_exposure = false;
+  RETURN_IF_ERROR(find_view(s, *query));
+  RETURN_IF_ERROR(parse_camera(camera, &query->camera, s->view.origin));
+  query->camera_stated = true, query->measure_exposure = measures;
+  return find_view(s, *query);
+}
+
 EffectPlan effects_of_servers(EffectMask mask) {
   EffectPlan plan;
   plan.mask = mask;
@@ -172,10 +182,12 @@ Status open_thin(ConnectedServers* s, const CommonOptions& o, const OutputNeed& 
   if (!o.fov.empty())
     return failure("--fov needs the scene on this device: raise --memory to hold it, or use --camera");
   ViewQuery query;
+  if (o.animation.size() >= kNameBytes)
+    return failure("--animation is '%.60s': no animation has so long a name", o.animation.c_str());
+  std::snprintf(query.animation, sizeof query.animation, "%s", o.animation.c_str());
   query.settings = opened->renderer.settings;
   query.camera_index = static_cast<std::uint16_t>(o.camera_index);  // below kCameraCountMax: options are checked
-  query.camera_stated = !o.camera.empty();
-  if (query.camera_stated) RETURN_IF_ERROR(parse_camera(o.camera, &query.camera));
+  if (!o.camera.empty()) RETURN_IF_ERROR(parse_camera(o.camera, &query.camera));
   ExposureChoice exposure;
   float factor;
   RETURN_IF_ERROR(parse_exposure(o.exposure, &exposure, &factor));
@@ -185,7 +197,7 @@ Status open_thin(ConnectedServers* s, const CommonOptions& o, const OutputNeed& 
   std::size_t wanted = opened->source.bytes_wanted, limit = query.settings.memory_bytes;
   Status status = s->is_named ? success() : name_without_loading(s, o.scene);
   query.scene = s->scene;
-  if (status.ok) status = find_view(s, query);
+  if (status.ok) status = o.camera.empty() ? find_view(s, query) : find_stated_view(s, o.camera, &query);
   if (!status.ok)
     return failure("%.100s does not fit in --memory %.1fM%s, and no server can render it; %s", o.scene.c_str(),
                    megabytes(limit), memory_hint(" (", wanted, "be a start)").c_str(), status.message);
@@ -201,6 +213,7 @@ Status open_thin(ConnectedServers* s, const CommonOptions& o, const OutputNeed& 
   renderer->pace = pace;
   renderer->camera = s->view.camera;
   renderer->camera_index = o.camera_index;
+  renderer->animation = s->view.animation;
   renderer->camera_overridden = query.camera_stated;
   renderer->exposure = s->view.exposure;
   RETURN_IF_ERROR(change_exposure(factor, &renderer->exposure));
@@ -235,6 +248,7 @@ Status open_scene_or_leave_it(Servers* servers, const CommonOptions& common, con
   end_client(s);
   s->is_named = s->is_thin = false;
   hooks.load = [s](const std::string& name, Renderer* renderer, SceneSource* source, SceneStorage* storage) {
+    renderer->animation = 0;  // the scene is that of the servers, even if nothing moves in it
     return load(s, name, renderer, source, storage);
   };
   hooks.loaded = [s, opened](const SceneSource&, Renderer* renderer) {

@@ -137,6 +137,11 @@ Status build(Session* session) {
 Status plan(Session* session, const JobTools& tools, WireError* code) {
   *code = WireError::too_large;
   if (!session->job.is_view_query) RETURN_IF_ERROR(plan_chunks(session));
+  const std::uint32_t animation = session->job.request.animation, count = session->job.scene->scene.animations.count;
+  if (animation != 0 && animation != kNone && animation >= count) {
+    *code = WireError::bad_request;
+    return failure("no animation %u: the scene has %u", animation, count);
+  }
   if (session->job.request.light_pitch > 0) RETURN_IF_ERROR(check_light_map(*session));
   if (!is_built_for(*session)) return plan_memory(session, tools, code);
   end_shared_rows(&session->renderer);  // while it has the last frame's geometry
@@ -145,6 +150,7 @@ Status plan(Session* session, const JobTools& tools, WireError* code) {
   // Its measurement was abandoned for another request: restarts it.
   session->renderer.camera = session->own_camera;
   session->renderer.camera_overridden = false;
+  session->renderer.animation = 0;
   session->renderer.exposure = session->renderer.scene.info.exposure;
   return prepare_frame(&session->renderer, 0);
 }
@@ -155,6 +161,7 @@ Status aim(Session* session) {
   CHECK_GT(session->own_exposure, 0);
   FrameJob* job = &session->job;
   Renderer* renderer = &session->renderer;
+  renderer->animation = job->request.animation;
   renderer->camera = session->own_camera;
   renderer->camera_overridden = false;
   if (job->request.camera_stated) RETURN_IF_ERROR(set_camera(renderer, job->request.camera));

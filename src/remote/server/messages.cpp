@@ -1,7 +1,9 @@
 #include <cstring>
 
 #include "base/check.h"
+#include "base/seal.h"
 #include "remote/server/state.h"
+#include "session/animation_choice.h"
 
 namespace pocketray {
 namespace {
@@ -98,6 +100,11 @@ void take_frame_change(Server* server, Session* session, const FrameRequest& cha
   take_request(server, session, request);
 }
 
+static Status find_by_name(const Scene& scene, const char* name, std::uint32_t* animation) {
+  SealPause pause;  // names are on the heap
+  return find_animation(scene, name, animation);
+}
+
 void take_view_query(Server* server, Session* session, const ViewQuery& query) {
   drop_job(session);
   ++session->job_number;
@@ -106,11 +113,14 @@ void take_view_query(Server* server, Session* session, const ViewQuery& query) {
     return refuse(server, session, WireError::too_large, 0, "the picture is larger than this server allows");
   const StoredScene* scene = find_scene(*server->store, query.scene);
   if (!scene) return refuse(server, session, WireError::unknown_scene, 0, "unknown scene");
+  std::uint32_t animation;
+  const Status found = find_by_name(scene->scene, query.animation, &animation);
+  if (!found.ok) return refuse(server, session, WireError::bad_request, 0, found.message);
   begin_job(session, scene);
   session->job.is_view_query = true;
   session->job.measure_exposure = query.measure_exposure;
   FrameRequest* request = &session->job.request;
-  request->scene = query.scene;
+  request->scene = query.scene, request->animation = animation;
   request->camera_stated = query.camera_stated, request->camera_index = query.camera_index;
   request->camera = query.camera, request->settings = query.settings;
 }

@@ -11,6 +11,8 @@ Status answer_view_query(Session* session) {
   message.type = MessageType::view_entry;
   ViewEntry* entry = &message.view_entry;
   entry->scene = session->job.scene->hash;
+  entry->animation = renderer->animation;
+  if (renderer->scene.origin.count) entry->origin = renderer->scene.origin[0];
   entry->camera = renderer->camera;
   entry->camera.node = kNone;
   entry->exposure = renderer->exposure;
