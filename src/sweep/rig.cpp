@@ -2,7 +2,6 @@
 #include <zlib.h>
 
 #include <algorithm>
-#include <mutex>
 
 #include "base/check.h"
 #include "base/limits.h"
@@ -12,9 +11,7 @@
 #include "plan/plan_lights.h"
 #include "plan/plan_scene.h"
 #include "platform/instructions.h"
-#include "reference/rendered.h"
 #include "scene/baked.h"
-#include "session/camera_control.h"
 #include "session/interrupt.h"
 #include "session/scene_identity.h"
 #include "sweep/sweep.h"
@@ -128,33 +125,6 @@ void make_rig_reference(Rig* rig) {
   rig->reference_memory.resize(reference_need(frame) + kArenaAlignment);
   Arena arena = make_arena("reference", rig->reference_memory.data(), rig->reference_memory.size());
   rig->reference = make_reference(frame, &arena);
-}
-
-bool trace_rows(const Renderer& renderer, const std::vector<std::uint32_t>& rows,
-                const std::function<void(std::uint32_t, Vec3d*)>& trace_row,
-                const std::function<void(std::uint32_t)>& row_done, Vec3* picture) {
-  CHECK(trace_row && picture != nullptr);
-  struct Context {
-    const std::vector<std::uint32_t>& rows;
-    const std::function<void(std::uint32_t, Vec3d*)>& trace_row;
-    const std::function<void(std::uint32_t)>& row_done;
-    Vec3* picture;
-    std::vector<std::vector<Vec3d>> row_of;  // each thread's
-    std::mutex mutex;
-  } context{rows, trace_row, row_done, picture, {}, {}};
-  context.row_of.assign(worker_thread_count(renderer.workers), std::vector<Vec3d>(renderer.settings.width));
-  auto take_row = [](void* user, std::uint32_t thread, std::uint32_t i) {
-    Context* c = static_cast<Context*>(user);
-    std::vector<Vec3d>& radiances = c->row_of[thread];
-    c->trace_row(c->rows[i], radiances.data());
-    Vec3* out = c->picture + std::size_t(c->rows[i]) * radiances.size();
-    for (const Vec3d& radiance : radiances) *out++ = to_float(radiance);
-    std::lock_guard<std::mutex> lock(c->mutex);
-    if (c->row_done) c->row_done(c->rows[i]);
-    return !interrupted;
-  };
-  auto count = static_cast<std::uint32_t>(rows.size());
-  return share_items(renderer.workers, 0, count, take_row, &context) == count;
 }
 
 std::uint32_t take_part(Rig* rig) {
