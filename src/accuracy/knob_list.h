@@ -27,7 +27,6 @@ int find_output_format(const std::string& name);
 // Everything a knob can change.
 struct Configuration {
   Settings settings;
-  bool double_precision = false;                         // for all tracing
   int output = 1;                                        // of kOutputFormats: the handheld's
   std::uint32_t sphere_columns = kCornellSphereColumns;  // of cornell
   bool near_lossless = false;                            // rows come from a render server, coded with small errors

@@ -170,8 +170,6 @@ std::string method_of(const Sweep& sweep) {
               ? std::string(
                     " With fewer than six rounds all intervals are ranges of the rounds, which cover less than 95 %.")
               : std::string()) +
-         " Double precision is not this renderer in other arithmetic: it is the reference’s own tracer, without ray "
-         "packets and with its own hierarchy, and its time is that tracer’s." +
          sent_method(sweep) +
          "</p>\n<p class=\"soft\">A slope is the "
          "exponent s of RMSE² = floor² + (c timeˢ)², fitted in each round to all values of a knob by least squares of "

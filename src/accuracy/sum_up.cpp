@@ -9,7 +9,6 @@
 namespace pocketray {
 namespace {
 
-constexpr const char* kOtherTracerNote = "time of the reference's own tracer, not of the renderer in double precision";
 constexpr const char* kSentNote = "as shown after the codec; the time is of tracing, without a server";
 
 // Times of finished rounds relative to the baseline's in the same round, whose runs share the state of the machine.
@@ -29,7 +28,6 @@ Measured measured_of(const SweepPoint& point, const PointFigures& f, const Point
     m.missing = "not measured yet";
     return m;
   }
-  if (point.configuration.double_precision) m.note = kOtherTracerNote;
   if (point.configuration.near_lossless) m.note = kSentNote;
   m.time_ratio = median_interval(ratios_of(f, baseline));
   m.ns_per_pixel = median_interval(f.ns_per_pixel);

@@ -195,13 +195,6 @@ void add_look_options(Command command, CommonOptions* o, std::initializer_list<c
 #endif
 }
 
-void add_vision_option(Command command, CommonOptions* o) {
-  command
-      .add_option("--pixels-per-degree,--ppd", o->pixels_per_degree,
-                  "pixels per degree of visual angle, for --moving-contrast")
-      .capture_default_str();
-}
-
 void add_coherence_options(Command command, CommonOptions* o, const char* usual) {
   o->coherence = usual;
   command

@@ -23,8 +23,6 @@ Option add_environment_option(Command command, std::string* name);
 // --background, --environment, --light, --fov and --focus. Call after add_scene_options(), or add_view_options().
 // `own_look`: options that the command has and that work with the scene's own look only.
 void add_look_options(Command command, CommonOptions* options, std::initializer_list<const char*> own_look = {});
-// The screen as it is seen, for --moving-contrast.
-void add_vision_option(Command command, CommonOptions* options);
 // --coherence, initially auto, and --coherence-table.
 void add_coherence_options(Command command, CommonOptions* options, const char* usual = "auto");
 // --budget-ms, --flip-max and --front, which exclude the settings they choose. Call after add_scene_options().

@@ -58,7 +58,6 @@ Status render_with_progress(Renderer* renderer, const RenderJob& job, std::uint3
   SpanSource source = list_source(&bands);
   source.aov = job.asked.aov;
   source.stop = &interrupted;
-  source.is_whole = job.asked.aov == Aov::none && job.crop_spans.empty();
   return render_frame(renderer, seconds, source, complete);
 }
 

@@ -140,19 +140,7 @@ Status check_raw(const RenderOptions& o, const RenderRequest& request) {
   return option ? failure("%s is for .raw pictures: drop it, or write .raw", option) : success();
 }
 
-// Whether frames build on the last one.
-bool builds_on_last(const RenderOptions& o) {
-  SettingOptions settings = o.common.settings;
-  auto is = [&](const char* setting, const char* choice) { return settings[setting].choice == choice; };
-  return is("resolution", kResolutionNames[static_cast<int>(Resolution::interleaved)]) ||
-         is("moving-contrast", kMovingContrastNames[static_cast<int>(MovingContrast::as_seen)]);
-}
-
 Status check_resume(const RenderOptions& o, const RenderRequest& request) {
-  if (o.resume && builds_on_last(o))
-    return failure(
-        "--resume renders frames alone, and those of --resolution interleaved and --moving-contrast as-seen build on "
-        "the last one: drop it, or these");
   if (keeps_journal(o, request))
     return check_outputs(inputs_of(o), {{"-o", journal_path(o.output)}, {"--json", o.common.json}});
   if (!o.resume) return success();
@@ -173,10 +161,6 @@ Status check_team(const RenderOptions& o, const RenderRequest& request) {
   if (!o.servers.addresses.empty() || chooses_settings(o.budget))
     return failure("ranks share frames by themselves: drop --server and %s, or start without mpirun",
                    option_that_chooses(o.budget));
-  if (builds_on_last(o))
-    return failure(
-        "ranks render frames alone, and those of --resolution interleaved and --moving-contrast as-seen build on the "
-        "last one: start without mpirun, or drop these");
   return success();
 }
 
@@ -196,7 +180,7 @@ Status check_frame_rate(const RenderOptions& o, const RenderRequest& request) {
 
 bool keeps_journal(const RenderOptions& o, const RenderRequest& request) {
   return request.sequence.given && request.animation == AnimationKind::none && o.servers.addresses.empty() &&
-         !chooses_settings(o.budget) && !builds_on_last(o);
+         !chooses_settings(o.budget);
 }
 
 std::string identity_of(const RenderOptions& o, const RenderRequest& request, const SceneSource& source,
@@ -262,9 +246,6 @@ std::vector<std::string> unexpected(const RenderOptions& o, const RenderRequest&
                   sequence ? "the last frame, at" : "--time", last, duration > 0 ? std::fmod(last, duration) : 0);
     notes.push_back(text);
   }
-  const bool single = !request.sequence.given || request.sequence.last == request.sequence.first;
-  if (single && renderer.settings.resolution == Resolution::interleaved)
-    notes.push_back("a single picture has no last one to build on: interleaved traces a plain checkerboard");
   const bool many = renderer.settings.samples_per_pixel > 1;
   if (many && request.aov != Aov::none && request.aov != Aov::cost)
     notes.push_back("--samples has no effect on --aov " + o.aov + ", which is that of the pixels' centres");
@@ -297,7 +278,6 @@ void add_render_options(Command command, RenderOptions* o) {
   add_budget_options(command, &o->budget);
   add_look_options(command, &o->common, {"--budget-ms", "--flip-max"});
   add_coherence_options(command, &o->common);
-  add_vision_option(command, &o->common);
   command
       .add_option("-o,--output", o->output,
                   "picture to write: .png, .jpg, .ppm, .pfm or .exr (linear radiance) or .raw (framebuffer bytes). A "

@@ -246,7 +246,6 @@ void add_view_command(Command program, const OptionalParts& parts, int* exit_sta
   add_budget_options(command, &o->budget);
   add_look_options(command, &o->common, {"--budget-ms", "--flip-max"});
   add_coherence_options(command, &o->common);
-  add_vision_option(command, &o->common);
   if (parts.side_by_side) add_side_by_side_option(command, &o->side_by_side);
   command
       .add_option("--screen", o->view.backend,

@@ -98,11 +98,8 @@ Status plan_front(Renderer* renderer, const SceneStorage& storage, const OutputN
     for (std::uint32_t i = 0; i < f->front.count; ++i) {
       most = std::max(most, f->front.candidates[i].points_per_area_light);
       if (f->front.candidates[i].indirect == kInstantRadiosity) renderer->settings.indirect = kInstantRadiosity;
-      const Resolution resolution = f->front.candidates[i].resolution;
-      if (resolution == Resolution::interleaved || renderer->settings.resolution == Resolution::full)
-        renderer->settings.resolution = resolution;
-      if (f->front.candidates[i].moving_contrast == MovingContrast::as_seen)
-        renderer->settings.moving_contrast = MovingContrast::as_seen;
+      if (renderer->settings.resolution == Resolution::full)
+        renderer->settings.resolution = f->front.candidates[i].resolution;
       if (is_smooth_on_triangles(f->front.candidates[i].reconstruction))
         renderer->settings.reconstruction = f->front.candidates[i].reconstruction;
       if (f->front.candidates[i].environment_shadows > 0)

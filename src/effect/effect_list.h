@@ -39,7 +39,7 @@ constexpr EffectRow kEffectList[kEffectCount] = {
     {Effect::mip_map, "mip-map", "a material with a texture that stores smaller levels"},
     {Effect::selective, "selective", "--selective above 0"},
     {Effect::environment, "environment", "a stored environment: light from every direction"},
-    {Effect::undersampling, "undersampling", "--resolution two-thirds, checkerboard, half or interleaved"},
+    {Effect::undersampling, "undersampling", "--resolution checkerboard or half"},
     {Effect::source_selection, "source-selection", "many lights"},
     {Effect::environment_shadow, "environment-shadow", "a stored environment and a diffuse material"},
     {Effect::anisotropy, "anisotropy", "a glossy material with a grain, such as brushed metal"},

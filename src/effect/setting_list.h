@@ -14,8 +14,7 @@ inline constexpr const char* kTextureFilterNames[] = {"scene", "nearest", "bilin
 inline constexpr const char* kAreaShadowsNames[] = {"adaptive", "every"};
 inline constexpr const char* kAreaIrradianceNames[] = {"points", "analytic"};
 inline constexpr const char* kNormalNames[] = {"scene", "flat"};
-inline constexpr const char* kResolutionNames[] = {"full", "checkerboard", "half", "interleaved", "two-thirds"};
-inline constexpr const char* kMovingContrastNames[] = {"as-resting", "as-seen"};
+inline constexpr const char* kResolutionNames[] = {"full", "checkerboard", "half"};
 inline constexpr const char* kCompensationNames[] = {"none", "rays"};
 inline constexpr const char* kReconstructionNames[] = {"constant", "bilinear", "bicubic", "quadratic", "cubic"};
 
@@ -216,22 +215,9 @@ inline constexpr SettingRow kSettingList[] = {
      {0.5, 0.375, 0.25, 0.1875, 0.125, 0.0625, 0},
      nullptr,
      ""},
-    {"moving-contrast",
-     "contrasts that selective rendering sees in what moves across the screen",
-     "as-seen: less of them, the faster it moves, at 30 frames per second or the scene's",
-     nullptr,
-     choice_field<&Quality::moving_contrast>(kMovingContrastNames),
-     0,
-     bit(Effect::selective),
-     kAlways,
-     false,
-     double(MovingContrast::as_resting),
-     {double(MovingContrast::as_seen), double(MovingContrast::as_resting)},
-     nullptr,
-     ""},
     {"resolution",
      "pixels to trace",
-     "the others are reconstructed along edges; interleaved: a checkerboard whose other half comes from the last frame",
+     "the others are reconstructed along edges",
      "resolution",
      choice_field<&Quality::resolution>(kResolutionNames),
      1,
@@ -239,8 +225,7 @@ inline constexpr SettingRow kSettingList[] = {
      kAlways,
      false,
      double(Resolution::full),
-     {double(Resolution::half), double(Resolution::checkerboard), double(Resolution::two_thirds),
-      double(Resolution::interleaved), double(Resolution::full)},
+     {double(Resolution::half), double(Resolution::checkerboard), double(Resolution::full)},
      nullptr,
      ""},
     {"light-tolerance",

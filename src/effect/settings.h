@@ -30,11 +30,8 @@ enum class AreaShadows : std::uint8_t { adaptive, every };
 // Light from flat lamps: the sum over their points, or in closed form.
 enum class AreaIrradiance : std::uint8_t { points, analytic };
 
-// The pixels that are traced: all, half of them, a quarter, or each half in turn; see shade/lattice.h.
-enum class Resolution : std::uint8_t { full, checkerboard, half, interleaved, two_thirds };
-
-// Contrasts in what moves across the screen, under selective rendering: as in what rests, or as the eye sees them.
-enum class MovingContrast : std::uint8_t { as_resting, as_seen };
+// The pixels that are traced: all, half of them, or a quarter; see shade/lattice.h.
+enum class Resolution : std::uint8_t { full, checkerboard, half };
 
 // The settings that trade accuracy for time, a row of setting_list.h each. They may change from frame to frame.
 struct Quality {
@@ -51,7 +48,6 @@ struct Quality {
   std::uint32_t virtual_lights = 64;  // of instant radiosity
   Compensation compensation = Compensation::none;
   float selective_contrast = 0;  // up to which pixels are interpolated, as displayed; 0: all are traced
-  MovingContrast moving_contrast = MovingContrast::as_resting;
   Resolution resolution = Resolution::full;
   float light_tolerance = 0.0625f;  // of many lights, the share that may go untested for shadows; 0: all are tested
   std::uint32_t environment_shadows = 32;  // directions; a pixel traces shadow rays along a sixteenth of them; 0: none
@@ -67,7 +63,6 @@ struct Settings : Quality {
   std::size_t memory_bytes = 64u << 20;      // the fixed block
   CoherenceMode coherence = CoherenceMode::off;
   std::uint32_t coherence_table = 16;  // blocks of pixels along each side, a bit of each voxel's table [Jevans92]
-  float pixels_per_degree = 23.6f;     // as the screen is seen, for moving_contrast: of a 3.5" one from 30 cm
   bool coherence_by_tables = false;    // the paper's way, for comparison: all rays in tables
 };
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "base/check.h"
-#include "engine/last_picture.h"
 #include "engine/recolor.h"
 #include "plan/plan_memory.h"
 
@@ -85,7 +84,6 @@ void begin_coherent(Renderer* renderer, CoherentFrame* frame) {
   state->follow_ms = state->find_ms = state->keep_ms = 0;
   std::uint64_t start = clock_ns(), paced_start = renderer->pace.clock->now_ns();
   frame->records = begin_following(renderer);
-  follow_picture(renderer);
   frame->all = state->whole_because != nullptr;
   if (frame->records) {
     state->follow_ms = ms_since(start);
@@ -119,7 +117,6 @@ void finish_coherent(Renderer* renderer, CoherentFrame* frame) {
     keep_frame(c, renderer->frame);
     share_items(renderer->workers, 0, c->tile_rows, measure_row, &rows);
   }
-  keep_picture(renderer);
   wait_for_pace(&renderer->pace, 0, paced_start);
   renderer->coherence_state.keep_ms = ms_since(start);
   frame->spent_ns += clock_ns() - start;

@@ -4,7 +4,6 @@
 
 #include "base/check.h"
 #include "base/limit_list.h"
-#include "engine/last_picture.h"
 #include "engine/prepare.h"
 
 namespace pocketray {
@@ -27,9 +26,7 @@ Status render_frame(Renderer* renderer, double seconds, const SpanSource& source
   RETURN_IF_ERROR(prepare_frame(renderer, seconds));
   const Clock& clock = *renderer->pace.clock;
   std::uint64_t start = clock.now_ns();
-  if (source.is_whole) follow_picture(renderer);
   bool done = trace_frame(renderer, source);
-  if (source.is_whole && done) keep_picture(renderer);
   renderer->timings.trace_ms = static_cast<double>(clock.now_ns() - start) * 1e-6;
   if (complete) *complete = done;
   return success();
@@ -41,7 +38,6 @@ Status render_frame(Renderer* renderer, double seconds, Aov aov, const std::atom
   SpanSource source = list_source(&list);
   source.aov = aov;
   source.stop = stop;
-  source.is_whole = aov == Aov::none && span_pixel_count(list.spans, list.span_count) == renderer->image.count;
   RETURN_IF_ERROR(render_frame(renderer, seconds, source));
   if (rows_done) *rows_done = list.done_count;
   return success();

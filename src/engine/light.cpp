@@ -48,7 +48,6 @@ void choose_kernels(Renderer* renderer) {
   renderer->frame.first_rays = renderer->accel_info;
   renderer->frame.first_hits = nullptr;
   renderer->frame.compensation_paths = nullptr;
-  renderer->frame.last = nullptr;
   renderer->frame.ray_by_ray = false;
   renderer->frame.settings = renderer->settings;
   renderer->frame.mask = renderer->effects.mask;
@@ -62,11 +61,9 @@ void choose_kernels(Renderer* renderer) {
     add_material_maps(&renderer->frame);
   else if (renderer->frame.surroundings)
     add_surroundings(&renderer->frame);
-  const bool sees_motion = renderer->settings.moving_contrast == MovingContrast::as_seen;
-  renderer->frame.trace_strip = is_interleaved(renderer->effects.mask)            ? trace_interleaved
-                                : !has(renderer->effects.mask, Effect::selective) ? nullptr
-                                : sees_motion                                     ? trace_moving_selectively
-                                                                                  : trace_selectively;
+  renderer->frame.trace_strip = is_interleaved(renderer->effects.mask)           ? trace_interleaved
+                                : has(renderer->effects.mask, Effect::selective) ? trace_selectively
+                                                                                 : nullptr;
   renderer->frame.trace_lattice_strip = nullptr;
   if (has(renderer->effects.mask, Effect::undersampling)) {
     renderer->frame.trace_lattice_strip = renderer->frame.trace_strip;

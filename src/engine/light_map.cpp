@@ -7,7 +7,7 @@
 #include "effect/setting_list.h"
 #include "indirect/ambient.h"
 #include "indirect/environment.h"
-#include "shade/carried.h"
+#include "shade/camera.h"
 #include "shade/contact.h"
 #include "shade/even_points.h"
 #include "shade/filters.h"

@@ -4,7 +4,6 @@
 
 #include "base/check.h"
 #include "effect/effect_list.h"
-#include "engine/last_picture.h"
 #include "plan/plan_effects.h"
 #include "scene/metallic_roughness.h"
 #include "scene/validate_checks.h"
@@ -70,7 +69,6 @@ Status change_material(Renderer* renderer, std::uint32_t index, const Material& 
                    index, name, name);
   }
   recolor(&renderer->coherence, index, before, material, renderer->scene);
-  forget_picture(renderer);
   renderer->lit_mask = ~EffectMask(0);  // place lights again
   return success();
 }

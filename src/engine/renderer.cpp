@@ -11,7 +11,6 @@
 #include "engine/coherent.h"
 #include "engine/exposure.h"
 #include "engine/frame.h"
-#include "engine/last_picture.h"
 #include "engine/recolor.h"
 #include "plan/place_light_polygons.h"
 #include "plan/plan_effects.h"
@@ -220,7 +219,6 @@ Status build_renderer_unexposed(Renderer* renderer) {
   for (std::uint32_t row = 0; row < renderer->settings.height; ++row)
     renderer->spans[row] = {static_cast<std::uint16_t>(row), 0, static_cast<std::uint16_t>(renderer->settings.width)};
   renderer->exposure = renderer->scene.info.exposure;
-  make_last_picture(renderer);
   RETURN_IF_ERROR(prepare_frame(renderer, 0));
   make_coherent(renderer);
   return success();
@@ -273,11 +271,6 @@ Status change_settings(Renderer* renderer, const Settings& settings) {
     return failure("memory is planned for shadow rays to all lights: plan with a --light-tolerance above 0");
   if (has(effects.mask, Effect::undersampling) && renderer->window_pixels.empty())
     return failure("memory is planned for all pixels to be traced: plan with --resolution half");
-  if (has(effects.mask, Effect::undersampling) && settings.resolution == Resolution::interleaved &&
-      renderer->last_picture.pixels.empty())
-    return failure("memory is planned without the last picture: plan with --resolution interleaved");
-  if (settings.moving_contrast == MovingContrast::as_seen && !renderer->last_picture.is_planned)
-    return failure("memory is planned without what moved: plan with --moving-contrast as-seen");
   std::size_t memory_bytes = now.memory_bytes;
   renderer->settings = settings;
   renderer->settings.memory_bytes = memory_bytes;

@@ -5,7 +5,6 @@
 #include "plan/plan_memory.h"
 #include "scene/animate.h"
 #include "scene/content_hash.h"
-#include "shade/motion_contrast.h"
 #include "shade/trace_spans.h"
 #include "temporal/coherence.h"
 
@@ -35,28 +34,6 @@ struct SharedRows {
   std::uint32_t known_rows = 0;     // of the last frame ...
   std::uint64_t known_changes = 0;  // ... and pixels to trace in these
   Span parts[2 * kThreadCountMax];  // a part of a row, or several rows apart
-};
-
-// What moves besides the camera: hashes of lights and of posed vertices.
-struct SceneNow {
-  ContentHash lights, positions, normals;
-};
-
-// The last whole picture, and what it depended on; last_picture.h.
-struct LastPictureState {
-  bool is_planned = false;
-  Array<Vec3> pixels;                       // empty: not planned
-  Array<Vec3> positions;                    // of a scene that moves
-  Array<Vec2> steps;                        // window_pixel_count() of them per thread
-  bool is_known = false, is_whole = false;  // all pixels were traced, or one half of a checkerboard after the other
-  FrameSignature signature, signature_now;
-  SceneNow scene, scene_now;
-  float exposure = 1, contrast = 0;
-  std::uint32_t parity = 0;
-  bool is_still = true, is_still_now = true;  // it was traced as what rests
-  MotionTolerance tolerance;
-  LastPicture last;  // of FrameData
-  Hit unused = {};   // for FrameData::first_hits, where steps are kept instead
 };
 
 // Deviations from the look that a scene brings or gets; initially none.
@@ -116,7 +93,6 @@ struct Renderer {
   Coherence coherence;  // made if planned
   CoherenceState coherence_state;
   SharedRows shared_rows;
-  LastPictureState last_picture;
   Pace pace;                   // of an emulated device; default: none
   Workers* workers = nullptr;  // null: only the caller's thread
   Light default_lights[2];

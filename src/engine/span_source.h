@@ -41,7 +41,6 @@ struct SpanSource {
   void (*pack)(void* context, const SpanBatch& batch) = nullptr;
 
   Aov aov = Aov::none;
-  bool is_whole = false;     // it hands out every pixel once, in colour: pictures may follow each other
   bool is_coherent = false;  // its batches complete the last coherent frame; any other source makes it obsolete
   std::uint64_t deadline_ns =
       kNoDeadline;  // by the source's clock; each call of trace_frame() traces at least one batch

@@ -181,7 +181,7 @@ void decide_environment_shadow(const Scene& scene, const Settings& settings, con
 
 EffectPlan plan_effects(const Scene& scene, const Settings& settings) {
   CHECK(within(Quantity::contrast, settings.selective_contrast));
-  CHECK(settings.resolution <= Resolution::two_thirds);
+  CHECK(settings.resolution <= Resolution::half);
   Census c = take_census(scene, settings);
   EffectPlan plan;
   PlanWriter w = {&plan, c.materials};
@@ -271,11 +271,9 @@ EffectPlan plan_effects(const Scene& scene, const Settings& settings) {
     w.set(Effect::undersampling, false, "instant radiosity needs every pixel");
   else
     w.set(Effect::undersampling, !full, "%s of the pixels traced",
-          full                                             ? "all"
-          : settings.resolution == Resolution::half        ? "a quarter"
-          : settings.resolution == Resolution::interleaved ? "each half in turn"
-          : settings.resolution == Resolution::two_thirds  ? "two thirds"
-                                                           : "half");
+          full                                      ? "all"
+          : settings.resolution == Resolution::half ? "a quarter"
+                                                    : "half");
   if (settings.light_tolerance == 0)
     w.set(Effect::source_selection, false, "every light tested for shadows");
   else if (selects)

@@ -8,7 +8,6 @@
 #include "base/span.h"
 #include "plan/place_light_polygons.h"
 #include "scene/animate.h"
-#include "shade/carried.h"
 #include "shade/interleaved.h"
 #include "shade/lattice.h"
 #include "shade/point_groups.h"
@@ -102,7 +101,7 @@ Status plan_memory_with(const Scene& scene, const Settings& settings, const Effe
                ? arena_need<InterleavedPixel>(std::size_t(settings.threads) * kept_pixel_count(settings))
                : 0);
   add_part(plan, "undersampling", ArenaKind::persistent,
-           lattice_need(settings) + last_picture_need(scene, effects.mask, settings));
+           lattice_need(settings));
   add_part(plan, "spans", ArenaKind::persistent,
            arena_need<Span>(settings.height) + arena_need<std::uint64_t>(settings.height));
   std::size_t pixel_count = static_cast<std::size_t>(settings.width) * settings.height;

@@ -93,9 +93,6 @@ Status read_others(const CommonOptions& o, Settings* settings) {
   if (o.coherence_table < 1 || o.coherence_table > kCoherenceTableSideMax)
     return failure("--coherence-table is %u: it must lie in 1 … %u", o.coherence_table, kCoherenceTableSideMax);
   settings->coherence_table = o.coherence_table;
-  if (!(o.pixels_per_degree >= 1 && o.pixels_per_degree <= 1000))
-    return failure("--pixels-per-degree is %g: it must lie in 1 … 1000", o.pixels_per_degree);
-  settings->pixels_per_degree = static_cast<float>(o.pixels_per_degree);
   return parse_coherence(o.coherence, &settings->coherence);
 }
 

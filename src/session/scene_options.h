@@ -45,7 +45,6 @@ struct CommonOptions {
   SettingOptions settings;
   std::string coherence = "off";
   std::uint32_t coherence_table = Settings().coherence_table;
-  double pixels_per_degree = static_cast<double>(Settings().pixels_per_degree);
 };
 
 // The largest block to take from a system with that many free bytes, which leaves it an eighth

@@ -1,5 +1,7 @@
 #include "shade/camera.h"
 
+#include <cmath>
+
 #include "base/check.h"
 #include "base/limit_list.h"
 
@@ -38,6 +40,16 @@ Status make_camera_rays(const Camera& camera, std::uint32_t width, std::uint32_t
   rays->width = static_cast<float>(width);
   rays->height = static_cast<float>(height);
   return success();
+}
+
+bool place_in_picture(const CameraRays& c, const Vec3& point, Vec2* place) {
+  const Vec3 to_point = point - c.eye;
+  const float depth = c.orthographic ? 1 : dot(to_point, c.forward);
+  if (!(depth > 0)) return false;
+  const float x = dot(to_point, c.right) / (dot(c.right, c.right) * depth);
+  const float y = dot(to_point, c.up) / (dot(c.up, c.up) * depth);
+  *place = {(x + 1) * 0.5f * c.width, (1 - y) * 0.5f * c.height};
+  return std::isfinite(place->x) && std::isfinite(place->y);
 }
 
 }  // namespace pocketray

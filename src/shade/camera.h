@@ -27,4 +27,7 @@ inline Ray camera_ray(const CameraRays& c, float x, float y) {
   return ray;
 }
 
+// Where the camera sees a point, in pixels; false: behind it, or nowhere.
+bool place_in_picture(const CameraRays& camera, const Vec3& point, Vec2* place);
+
 }  // namespace pocketray

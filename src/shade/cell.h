@@ -11,7 +11,6 @@ struct CellCorner {
   Vec3 radiance;
   Vec3 diffuse, glow, normal;  // of the surface there
   const Material* material;    // null: the background
-  float tolerance;             // see motion_contrast.h; set with MovingContrast::as_seen
   bool is_smooth;              // see has_smooth_light(); true for the background
   bool known = false;
 };
@@ -19,7 +18,6 @@ struct CellCorner {
 struct PixelCell {
   const CellCorner* corner[4];  // left and right above, then below
   float across, down;           // one pixel's share of the cell's sides
-  float contrast;               // up to which it is interpolated; set with MovingContrast::as_seen
 };
 
 // Whether light that leaves the first surface along a ray changes no faster than its lighting: it is no mirror, glass,

@@ -118,19 +118,6 @@ struct PixelRows {
   }
 };
 
-struct MotionTolerance;
-
-// An earlier picture that this one builds on; carried.h.
-struct LastPicture {
-  Array<const Vec3> pixels;     // width × height; empty: none are carried over
-  CameraRays camera;            // that it was seen by
-  Array<const Vec3> positions;  // posed as they were
-  std::uint32_t parity = 0;     // this picture traces the pixels whose column and row add up to it, modulo 2
-  bool is_known = false;        // otherwise there is none, and the rest is not set
-  bool rests = false;           // nothing has changed, and it traced the other pixels
-  const MotionTolerance* tolerance = nullptr;  // set with MovingContrast::as_seen
-};
-
 struct FrameData;
 struct KeptPath;
 struct Rgba;
@@ -217,8 +204,6 @@ struct FrameData {
   Hit* first_hits = nullptr;  // receives the first hits, width × height for each sample in turn; null: not kept
   KeptPath* compensation_paths = nullptr;  // the same of compensation's rays, see compensation.h
   bool ray_by_ray = false;                 // no packets
-  const LastPicture* last =
-      nullptr;  // set with Resolution::interleaved or MovingContrast::as_seen where pictures follow each other
 };
 
 // The filter for camera and secondary rays: null if nothing is cut out.
@@ -241,7 +226,6 @@ struct CornerRow {
 struct LatticeWindow {
   Array<Vec3> pixels;
   Array<std::uint8_t> states;
-  Array<Vec2> steps;        // how far to where they were in the last picture; empty: not wanted
   std::uint32_t row = ~0u;  // of the row of tiles that it is about; ~0: none
 };
 

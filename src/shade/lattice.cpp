@@ -5,7 +5,6 @@
 
 #include "base/check.h"
 #include "effect/effect_probe.h"
-#include "shade/carried.h"
 #include "shade/tile.h"
 
 namespace pocketray {
@@ -27,14 +26,7 @@ struct Window {
   }
   // A picture with one row or column has no pairs of neighbours: all of it is traced.
   bool is_traced(std::uint32_t column, std::uint32_t row) const {
-    const LastPicture* last = tracer->frame->last;
-    return on_lattice(settings().resolution, column, row, last ? last->parity : 0) || settings().width < 2 ||
-           settings().height < 2;
-  }
-  // The last picture, if pixels are carried over from it.
-  const LastPicture* carries() const {
-    const LastPicture* last = tracer->frame->last;
-    return last && last->pixels.count ? last : nullptr;
+    return on_lattice(settings().resolution, column, row) || settings().width < 2 || settings().height < 2;
   }
 };
 
@@ -51,7 +43,6 @@ Window open_window(Tracer* tracer, std::uint32_t row) {
       known = kWindowRows - kTileSide;
       std::copy_n(kept.pixels.data + kTileSide * width, known * width, kept.pixels.data);
       std::copy_n(kept.states.data + kTileSide * width, known * width, kept.states.data);
-      if (kept.steps.count) std::copy_n(kept.steps.data + kTileSide * width, known * width, kept.steps.data);
     }
     std::fill(kept.states.data + known * width, kept.states.data + kWindowRows * width, kUnknown);
     kept.row = row;
@@ -187,21 +178,6 @@ Vec3 along_edge(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
   return ((a + b) + (c + d)) * 0.25f;
 }
 
-Vec3 carried(const Window& window, const LastPicture& last, std::uint32_t column, std::uint32_t row,
-             const Neighbours& n, const Vec3* const value[4]) {
-  const LatticeWindow& kept = window.tracer->window;
-  CarryFrom from;
-  from.knows_steps = kept.steps.count > 0;
-  for (int i = 0; i < 4; ++i) {
-    from.value[i] = value[i], from.index[i] = std::size_t(n.row[i]) * window.rows.width + n.column[i];
-    if (from.knows_steps)
-      from.step[i] = kept.steps[std::size_t(n.row[i] - window.rows.first_row) * window.rows.width + n.column[i]];
-  }
-  const int pair = difference(*value[2], *value[3]) < difference(*value[0], *value[1]) ? 2 : 0;
-  return carried(last, window.tracer->frame->camera, column, row, from, pair,
-                 along_edge(*value[0], *value[1], *value[2], *value[3]));
-}
-
 const Vec3& reconstructed(const Window& window, std::uint32_t column, std::uint32_t row) {
   Vec3& pixel = window.rows.at(column, row);
   std::uint8_t& state = window.state(column, row);
@@ -210,10 +186,7 @@ const Vec3& reconstructed(const Window& window, std::uint32_t column, std::uint3
   const Neighbours n = neighbours_of(window.settings(), column, row);
   const Vec3* value[4];
   for (int i = 0; i < 4; ++i) value[i] = &reconstructed(window, n.column[i], n.row[i]);
-  if (const LastPicture* last = window.carries())
-    pixel = carried(window, *last, column, row, n, value);
-  else
-    pixel = along_edge(*value[0], *value[1], *value[2], *value[3]);
+  pixel = along_edge(*value[0], *value[1], *value[2], *value[3]);
   state = kKnown;
   return pixel;
 }
@@ -258,7 +231,7 @@ void reconstruct(const Window& window, std::uint32_t left, std::uint32_t top, st
                  const PixelRows& image) {
   const Settings& settings = window.settings();
   const bool inside = left > 0 && top > 0 && left + kTileSide < settings.width && top + kTileSide < settings.height;
-  if (inside && mask == ~std::uint64_t(0) && !window.carries()) return reconstruct_tile(window, left, top, image);
+  if (inside && mask == ~std::uint64_t(0)) return reconstruct_tile(window, left, top, image);
   for_each_pixel(left, top, mask, [&](std::uint32_t column, std::uint32_t row) {
     image.at(column, row) = reconstructed(window, column, row);
   });
@@ -270,7 +243,7 @@ void keep_window(Array<Vec3> pixels, Array<std::uint8_t> states, Tracer* tracer)
   CHECK(tracer->frame != nullptr);
   CHECK_GE(pixels.count, window_pixel_count(tracer->frame->settings));
   CHECK_EQ(pixels.count, states.count);
-  tracer->window = {pixels, states, {}, ~0u};
+  tracer->window = {pixels, states, ~0u};
 }
 
 void trace_lattice(Tracer* tracer, const TileStrip& strip, const PixelRows& image) {

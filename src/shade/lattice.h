@@ -1,13 +1,9 @@
 // Undersampling: the pixels of a lattice are traced, the others reconstructed along the edges between them.
 //
-// A checkerboard is half of the pixels; every other pixel of every other row is a quarter; two thirds are all but every
-// third diagonal. A missing pixel of a checkerboard or of two thirds lies between two pairs of opposite neighbours and
-// takes the mean of the pair that differs less. A quarter is first completed to a checkerboard, by the diagonals, as in
+// A checkerboard is half of the pixels; every other pixel of every other row is a quarter. A missing pixel of a checkerboard
+// lies between two pairs of opposite neighbours and takes the mean of the pair that differs less. A quarter is first completed to a checkerboard, by the diagonals, as in
 // [Zhou et al. 2012, "Image Zooming Using Directional Cubic Convolution Interpolation", sec. 2] with means for cubics.
 // At the picture's edges it is mirrored.
-//
-// An interleaved picture traces one half of the checkerboard and the next picture the other half; what is missing comes
-// from the last picture where that is still right; see carried.h.
 //
 // A pixel depends on those at most two columns and rows away: the picture does not depend on how it is divided.
 #pragma once
@@ -19,20 +15,16 @@ namespace pocketray {
 constexpr std::uint32_t kRowsAbove = 2, kRowsBelow = 1;
 constexpr std::uint32_t kWindowRows = kRowsAbove + kTileSide + kRowsBelow;
 
-// `parity` is that of an interleaved checkerboard, LastPicture::parity.
-constexpr bool on_lattice(Resolution resolution, std::uint32_t column, std::uint32_t row, std::uint32_t parity = 0) {
+constexpr bool on_lattice(Resolution resolution, std::uint32_t column, std::uint32_t row) {
   switch (resolution) {
     case Resolution::full:
       return true;
     case Resolution::half:
       return (column | row) % 2 == 0;
-    case Resolution::two_thirds:
-      return (column + row) % 3 != 2;
     case Resolution::checkerboard:
-    case Resolution::interleaved:
       break;
   }
-  return (column + row + parity) % 2 == 0;
+  return (column + row) % 2 == 0;
 }
 
 constexpr std::uint32_t window_pixel_count(const Settings& settings) { return kWindowRows * settings.width; }

@@ -5,7 +5,6 @@
 #include "base/check.h"
 #include "effect/effect_probe.h"
 #include "shade/filters.h"
-#include "shade/motion_contrast.h"
 #include "shade/pixel.h"
 #include "shade/tile.h"
 
@@ -48,13 +47,12 @@ CellCorner* kept_corner(const CellTile& tile, std::uint32_t i, std::uint32_t k) 
   return &kept->corners[tile.column / kCellSide + i];
 }
 
-template <bool moving>
 const CellCorner& corner_at(CellTile* tile, std::uint32_t i, std::uint32_t k) {
   CellCorner& corner = tile->corner[i][k];
   if (corner.known) return corner;
   if (i > 0 && corner_column(*tile, i) == corner_column(*tile, i - 1))
-    return corner = corner_at<moving>(tile, i - 1, k);
-  if (k > 0 && corner_row(*tile, k) == corner_row(*tile, k - 1)) return corner = corner_at<moving>(tile, i, k - 1);
+    return corner = corner_at(tile, i - 1, k);
+  if (k > 0 && corner_row(*tile, k) == corner_row(*tile, k - 1)) return corner = corner_at(tile, i, k - 1);
   CellCorner* kept = kept_corner(*tile, i, k);
   if (kept && kept->known) return corner = *kept;
   Surface s;
@@ -62,33 +60,18 @@ const CellCorner& corner_at(CellTile* tile, std::uint32_t i, std::uint32_t k) {
   corner.material = s.material;
   corner.is_smooth = !s.material || has_smooth_light(tile->frame(), s);
   if (s.material) corner.diffuse = s.diffuse, corner.glow = s.glow, corner.normal = s.normal;
-  if constexpr (moving) {
-    const Hit hit = s.material ? Hit{0, s.hit.u, s.hit.v, s.hit.triangle} : Hit{0, 0, 0, kNoTriangle};
-    corner.tolerance = motion_tolerance(tile->frame(), corner_column(*tile, i), corner_row(*tile, k), hit);
-  }
   corner.known = true;
   if (kept) *kept = corner;
   return corner;
 }
 
-template <bool moving>
 PixelCell cell_at(CellTile* tile, std::uint32_t i, std::uint32_t k) {
   PixelCell cell;
-  for (std::uint32_t c = 0; c < 4; ++c) cell.corner[c] = &corner_at<moving>(tile, i + c % 2, k + c / 2);
-  if constexpr (moving) {
-    float tolerance = cell.corner[0]->tolerance;  // of the slowest: what rests between them is seen as well as ever
-    for (const CellCorner* corner : cell.corner) tolerance = std::min(tolerance, corner->tolerance);
-    cell.contrast = std::min(tile->frame().selection.contrast * tolerance, 1.0f);
-  }
+  for (std::uint32_t c = 0; c < 4; ++c) cell.corner[c] = &corner_at(tile, i + c % 2, k + c / 2);
   const std::uint32_t width = corner_column(*tile, i + 1) - corner_column(*tile, i);
   const std::uint32_t height = corner_row(*tile, k + 1) - corner_row(*tile, k);
   cell.across = 1 / static_cast<float>(std::max(width, 1u)), cell.down = 1 / static_cast<float>(std::max(height, 1u));
   return cell;
-}
-
-template <bool moving>
-float contrast_of(const FrameData& frame, const PixelCell& cell) {
-  return moving ? cell.contrast : frame.selection.contrast;
 }
 
 // Interpolates a cell's pixels, given by their places in the tile.
@@ -113,20 +96,18 @@ struct Doubtful {
 };
 
 // Takes a pixel's light from its cell's corners if they tell it. `s` receives the surface that the ray hits, if any.
-template <bool moving>
 bool take_light(Tracer* tracer, const Doubtful& pixels, std::uint32_t i, const Ray& ray, const Hit& hit, Surface* s,
                 Vec3* radiance) {
   if (hit.triangle == kNoTriangle) return false;
   tracer->frame->surface(*tracer->frame, ray, hit, s);
   const std::uint32_t m = pixels.place[i], column = morton_column(m) % kCellSide, row = morton_row(m) % kCellSide;
   const PixelCell& cell = pixels.cell[m / (kCellSide * kCellSide)];
-  if (!predict(*tracer->frame, cell, contrast_of<moving>(*tracer->frame, cell), *s, column, row, radiance))
+  if (!predict(*tracer->frame, cell, tracer->frame->selection.contrast, *s, column, row, radiance))
     return false;
   ++tracer->rays[static_cast<int>(RayKind::primary)];
   return true;
 }
 
-template <bool moving>
 void trace_together(Tracer* tracer, const Doubtful& pixels, const PixelRows& image) {
   const FrameData& frame = *tracer->frame;
   const Tile& tile = pixels.tile;
@@ -142,7 +123,7 @@ void trace_together(Tracer* tracer, const Doubtful& pixels, const PixelRows& ima
   for (std::uint32_t i = 0; i < tile.count; ++i) {
     Surface s;
     Vec3* pixel = &image.at(tile.column[i], tile.row[i]);
-    if (take_light<moving>(tracer, pixels, i, ray_of(packet, i), hits[i], &s, pixel)) continue;
+    if (take_light(tracer, pixels, i, ray_of(packet, i), hits[i], &s, pixel)) continue;
     for (int axis = 0; axis < 3; ++axis) rays.direction[axis][shaded.count] = packet.direction[axis][i];
     hits[shaded.count] = hits[i];
     add_pixel(tile.column[i], tile.row[i], &shaded);
@@ -154,7 +135,6 @@ void trace_together(Tracer* tracer, const Doubtful& pixels, const PixelRows& ima
   for (std::uint32_t i = 0; i < shaded.count; ++i) image.at(shaded.column[i], shaded.row[i]) = sum[i];
 }
 
-template <bool moving>
 void trace_one(Tracer* tracer, const Doubtful& pixels, std::uint32_t i, const PixelRows& image) {
   const FrameData& frame = *tracer->frame;
   const Ray ray = pixel_ray(frame, pixels.tile.column[i], pixels.tile.row[i], {0.5f, 0.5f});
@@ -162,20 +142,19 @@ void trace_one(Tracer* tracer, const Doubtful& pixels, std::uint32_t i, const Pi
   frame.first_rays->closest(frame.accel, ray, visible_filter(frame), &hit, &tracer->stats);
   Surface s;
   Vec3* pixel = &image.at(pixels.tile.column[i], pixels.tile.row[i]);
-  if (take_light<moving>(tracer, pixels, i, ray, hit, &s, pixel)) return;
+  if (take_light(tracer, pixels, i, ray, hit, &s, pixel)) return;
   tracer->first_surface = hit.triangle != kNoTriangle ? &s : nullptr;
   *pixel = sample_radiance(tracer, ray, hit, tracer->first_surface);
   tracer->first_surface = nullptr;
 }
 
-template <bool moving>
 void trace_doubtful(Tracer* tracer, const Doubtful& pixels, const PixelRows& image) {
   const FrameData& frame = *tracer->frame;
   const Tile& tile = pixels.tile;
   const bool has_packets = !frame.ray_by_ray && !frame.camera.orthographic;
   if (frame.settings.samples_per_pixel == 1) {
-    if (has_packets && tile.count >= kCameraRaysMin) return trace_together<moving>(tracer, pixels, image);
-    for (std::uint32_t i = 0; i < tile.count; ++i) trace_one<moving>(tracer, pixels, i, image);
+    if (has_packets && tile.count >= kCameraRaysMin) return trace_together(tracer, pixels, image);
+    for (std::uint32_t i = 0; i < tile.count; ++i) trace_one(tracer, pixels, i, image);
     return;
   }
   // A pixel of several samples has no one surface.
@@ -185,7 +164,6 @@ void trace_doubtful(Tracer* tracer, const Doubtful& pixels, const PixelRows& ima
 }
 
 // Traces the wanted pixels of a tile, cell by cell.
-template <bool moving>
 void trace_cells(CellTile* tile, std::uint64_t wanted, const PixelRows& image) {
   constexpr std::uint32_t kCellPixels = kCellSide * kCellSide;
   const FrameData& frame = tile->frame();
@@ -196,11 +174,11 @@ void trace_cells(CellTile* tile, std::uint64_t wanted, const PixelRows& image) {
     const std::uint32_t i = c % 2, k = c / 2;
     std::uint64_t mask = wanted & cell_mask;
     if (mask & corner_mask)
-      image.at(corner_column(*tile, i), corner_row(*tile, k)) = corner_at<moving>(tile, i, k).radiance;
+      image.at(corner_column(*tile, i), corner_row(*tile, k)) = corner_at(tile, i, k).radiance;
     mask &= ~corner_mask;
     if (!mask) continue;
-    const PixelCell cell = doubtful.cell[c] = cell_at<moving>(tile, i, k);
-    if (is_flat(frame, cell, contrast_of<moving>(frame, cell))) {
+    const PixelCell cell = doubtful.cell[c] = cell_at(tile, i, k);
+    if (is_flat(frame, cell, frame.selection.contrast)) {
       interpolate(*tile, cell, mask, image);
       continue;
     }
@@ -210,7 +188,7 @@ void trace_cells(CellTile* tile, std::uint64_t wanted, const PixelRows& image) {
       add_pixel(tile->column + morton_column(m), tile->row + morton_row(m), &doubtful.tile);
     }
   }
-  trace_doubtful<moving>(tile->tracer, doubtful, image);
+  trace_doubtful(tile->tracer, doubtful, image);
 }
 
 // The next tile to the right shares a column of corners.
@@ -220,23 +198,6 @@ void move_right(CellTile* tile) {
     tile->corner[1][k].known = tile->corner[2][k].known = false;
   }
   tile->column += kTileSide;
-}
-
-template <bool moving>
-void trace_strip(Tracer* tracer, const TileStrip& strip, const PixelRows& image) {
-  effect_entered<Effect::selective>();
-  if (strip.tile_count == 0) return;
-  CHECK(strip.row_count >= 1 && strip.row_count <= kTileRows);
-  AlignedTiles tiles;
-  align_tiles(strip, &tiles);
-  for (std::uint32_t r = 0; r < 2; ++r) {
-    CellTile tile;
-    tile.tracer = tracer, tile.column = tiles.column, tile.row = tiles.row + r * kTileSide;
-    for (std::uint32_t c = 0; c < tiles.tile_count; ++c) {
-      if (tiles.mask[r][c]) trace_cells<moving>(&tile, tiles.mask[r][c], image);
-      move_right(&tile);
-    }
-  }
 }
 
 }  // namespace
@@ -251,11 +212,19 @@ void keep_corner_rows(Array<CellCorner> rows, Tracer* tracer) {
 }
 
 void trace_selectively(Tracer* tracer, const TileStrip& strip, const PixelRows& image) {
-  trace_strip<false>(tracer, strip, image);
-}
-
-void trace_moving_selectively(Tracer* tracer, const TileStrip& strip, const PixelRows& image) {
-  trace_strip<true>(tracer, strip, image);
+  effect_entered<Effect::selective>();
+  if (strip.tile_count == 0) return;
+  CHECK(strip.row_count >= 1 && strip.row_count <= kTileRows);
+  AlignedTiles tiles;
+  align_tiles(strip, &tiles);
+  for (std::uint32_t r = 0; r < 2; ++r) {
+    CellTile tile;
+    tile.tracer = tracer, tile.column = tiles.column, tile.row = tiles.row + r * kTileSide;
+    for (std::uint32_t c = 0; c < tiles.tile_count; ++c) {
+      if (tiles.mask[r][c]) trace_cells(&tile, tiles.mask[r][c], image);
+      move_right(&tile);
+    }
+  }
 }
 
 }  // namespace pocketray

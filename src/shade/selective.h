@@ -28,8 +28,7 @@ inline std::size_t selective_need(const Settings& settings) {
 // Gives a tracer its rows, two or four of corner_count() each, one after the other.
 void keep_corner_rows(Array<CellCorner> rows, Tracer* tracer);
 
-// Traces the strip's pixels. The latter for MovingContrast::as_seen: what moves may have more contrast unseen.
+// Traces the strip's pixels.
 void trace_selectively(Tracer* tracer, const TileStrip& strip, const PixelRows& image);
-void trace_moving_selectively(Tracer* tracer, const TileStrip& strip, const PixelRows& image);
 
 }  // namespace pocketray

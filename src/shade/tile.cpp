@@ -2,7 +2,6 @@
 
 #include "base/check.h"
 #include "effect/effect_probe.h"
-#include "shade/carried.h"
 #include "shade/even_points.h"
 #include "shade/filters.h"
 #include "shade/pixel.h"
@@ -31,10 +30,6 @@ void set_directions(const CameraRays& camera, const Tile& tile, const Vec2& offs
 
 void keep_first_hit(Tracer* tracer, std::uint32_t sample, std::uint32_t column, std::uint32_t row, const Hit& hit) {
   const FrameData& frame = *tracer->frame;
-  if (tracer->window.steps.count) {
-    if (sample == 0) keep_step(tracer, column, row, hit);
-    return;
-  }
   std::size_t width = frame.settings.width;
   frame.first_hits[(std::size_t(sample) * frame.settings.height + row) * width + column] = hit;
 }

@@ -2,20 +2,16 @@
 #include <zlib.h>
 
 #include <algorithm>
-#include <mutex>
 
 #include "base/check.h"
 #include "base/limits.h"
 #include "budget/front_file.h"
 #include "effect/setting_list.h"
 #include "engine/frame.h"
-#include "engine/last_picture.h"
 #include "plan/plan_lights.h"
 #include "plan/plan_scene.h"
 #include "platform/instructions.h"
-#include "reference/rendered.h"
 #include "scene/baked.h"
-#include "session/camera_control.h"
 #include "session/interrupt.h"
 #include "session/scene_identity.h"
 #include "sweep/sweep.h"
@@ -43,7 +39,7 @@ std::string hash_of(const SceneSource& source, const Scene& scene) {
 // The settings with the largest memory need of all that a sweep tries.
 Settings dearest(const Scene& scene, Settings settings) {
   settings.indirect = indirect_choice(Effect::instant_radiosity);
-  settings.resolution = Resolution::interleaved, settings.moving_contrast = MovingContrast::as_seen;
+  settings.resolution = Resolution::half;
   settings.reconstruction = Reconstruction::cubic;
   std::uint32_t own = settings.points_per_area_light;
   for (std::uint32_t points = kPointsPerAreaLightMax; points > own; --points) {
@@ -105,45 +101,6 @@ std::uint32_t row_count(const Rig& rig) {
   return rig.part_pixels ? rig.part_pixels / settings.width : settings.height;
 }
 
-// Like render_frame(), in double precision.
-Status render_in_double(Rig* rig, double seconds) {
-  Renderer* renderer = &rig->opened.renderer;
-  RETURN_IF_ERROR(prepare_frame(renderer, seconds));
-  std::vector<std::uint32_t> all(row_count(*rig));
-  std::uint32_t rows = static_cast<std::uint32_t>(all.size());
-  for (std::uint32_t i = 0; i < rows; ++i) all[i] = i;
-  trace_rows(
-      *renderer, all,
-      [&](std::uint32_t i, Vec3d* radiances) {
-        std::uint32_t row = (2 * i + 1) * renderer->settings.height / (2 * rows);
-        trace_as_rendered(rig->reference, row, row + 1, radiances);
-      },
-      nullptr, renderer->image.data);
-  return success();
-}
-
-// Whether the frame builds on the one before it.
-bool interleaves(const Configuration& configuration) {
-  const Settings& s = configuration.settings;
-  return (s.resolution == Resolution::interleaved || s.moving_contrast == MovingContrast::as_seen) &&
-         !configuration.double_precision;
-}
-
-// Of a frame that builds on the one before, the latter: a frame's time earlier, by a camera a degree aside, which turns
-// once in 12 s at 30 frames a second. At rest, errors and prices would be those of no frame that anybody waits for.
-Status render_frame_before(Renderer* renderer, double seconds) {
-  constexpr float kAsideDegrees = 1;
-  const Camera camera = renderer->camera;
-  const bool was_overridden = renderer->camera_overridden;
-  const CameraControl path = make_camera_control(camera, renderer->accel.bounds);
-  forget_picture(renderer);
-  RETURN_IF_ERROR(set_camera(renderer, orbited_camera(path, kAsideDegrees)));
-  const double earlier = seconds - 1 / static_cast<double>(renderer->scene.info.frames_per_second);
-  RETURN_IF_ERROR(render_frame(renderer, std::max(earlier, 0.0), Aov::none, &interrupted));
-  renderer->camera = camera, renderer->camera_overridden = was_overridden;
-  return success();
-}
-
 }  // namespace
 
 Status open_rig(const AccuracyOptions& options, std::uint32_t sphere_columns, std::unique_ptr<Rig>* rig) {
@@ -170,33 +127,6 @@ void make_rig_reference(Rig* rig) {
   rig->reference = make_reference(frame, &arena);
 }
 
-bool trace_rows(const Renderer& renderer, const std::vector<std::uint32_t>& rows,
-                const std::function<void(std::uint32_t, Vec3d*)>& trace_row,
-                const std::function<void(std::uint32_t)>& row_done, Vec3* picture) {
-  CHECK(trace_row && picture != nullptr);
-  struct Context {
-    const std::vector<std::uint32_t>& rows;
-    const std::function<void(std::uint32_t, Vec3d*)>& trace_row;
-    const std::function<void(std::uint32_t)>& row_done;
-    Vec3* picture;
-    std::vector<std::vector<Vec3d>> row_of;  // each thread's
-    std::mutex mutex;
-  } context{rows, trace_row, row_done, picture, {}, {}};
-  context.row_of.assign(worker_thread_count(renderer.workers), std::vector<Vec3d>(renderer.settings.width));
-  auto take_row = [](void* user, std::uint32_t thread, std::uint32_t i) {
-    Context* c = static_cast<Context*>(user);
-    std::vector<Vec3d>& radiances = c->row_of[thread];
-    c->trace_row(c->rows[i], radiances.data());
-    Vec3* out = c->picture + std::size_t(c->rows[i]) * radiances.size();
-    for (const Vec3d& radiance : radiances) *out++ = to_float(radiance);
-    std::lock_guard<std::mutex> lock(c->mutex);
-    if (c->row_done) c->row_done(c->rows[i]);
-    return !interrupted;
-  };
-  auto count = static_cast<std::uint32_t>(rows.size());
-  return share_items(renderer.workers, 0, count, take_row, &context) == count;
-}
-
 std::uint32_t take_part(Rig* rig) {
   Renderer* renderer = &rig->opened.renderer;
   constexpr std::uint32_t kParts = 4;  // along each axis
@@ -218,13 +148,8 @@ Status time_frame(Rig* rig, const Configuration& configuration, double seconds, 
   Renderer* renderer = &rig->opened.renderer;
   RETURN_IF_ERROR(change_settings(renderer, configuration.settings));
   RETURN_IF_ERROR(prepare_frame(renderer, seconds));  // a change of settings does not count towards the frame
-  if (configuration.double_precision) make_rig_reference(rig);
-  if (interleaves(configuration)) RETURN_IF_ERROR(render_frame_before(renderer, seconds));
   std::uint64_t start = clock_ns();
-  if (configuration.double_precision)
-    RETURN_IF_ERROR(render_in_double(rig, seconds));
-  else
-    RETURN_IF_ERROR(render_frame(renderer, seconds, Aov::none, &interrupted));
+  RETURN_IF_ERROR(render_frame(renderer, seconds, Aov::none, &interrupted));
   double frame_ns = static_cast<double>(clock_ns() - start);
   CHECK_GE(configuration.output, 0);
   const OutputFormat& output = kOutputFormats[configuration.output];
@@ -247,18 +172,13 @@ Status count_instructions(Rig* rig, const Configuration& configuration, double s
   Renderer* renderer = &rig->opened.renderer;
   RETURN_IF_ERROR(change_settings(renderer, configuration.settings));
   RETURN_IF_ERROR(prepare_frame(renderer, seconds));
-  if (configuration.double_precision) make_rig_reference(rig);
   start = platform::instruction_count();
   RETURN_IF_ERROR(prepare_frame(renderer, seconds));  // prepares a second time, so that it is not counted
-  std::uint64_t prepared = platform::instruction_count(), before = 0;
-  if (interleaves(configuration)) {
-    RETURN_IF_ERROR(render_frame_before(renderer, seconds));
-    before = platform::instruction_count() - prepared;
-  }
+  std::uint64_t prepared = platform::instruction_count();
   double ns_per_pixel;
   RETURN_IF_ERROR(time_frame(rig, configuration, seconds, &ns_per_pixel));
   std::uint64_t end = platform::instruction_count();
-  double traced = static_cast<double>(end - prepared - 2 * before) - 2 * static_cast<double>(prepared - start);
+  double traced = static_cast<double>(end - prepared) - 2 * static_cast<double>(prepared - start);
   if (!interrupted && traced > 0) *per_pixel = traced / static_cast<double>(renderer->image.count);
   return success();
 }

@@ -47,12 +47,6 @@ Status open_rig(const AccuracyOptions& options, std::uint32_t sphere_columns, st
 // Makes rig->reference of the prepared frame, unless already made.
 void make_rig_reference(Rig* rig);
 
-// Calls trace_row(row, radiances) for each row, on all workers, and stores the result in `picture`, width × height.
-// Calls row_done(row), unless null, one thread at a time. False if interrupted before the last row.
-bool trace_rows(const Renderer& renderer, const std::vector<std::uint32_t>& rows,
-                const std::function<void(std::uint32_t, Vec3d*)>& trace_row,
-                const std::function<void(std::uint32_t)>& row_done, Vec3* picture);
-
 // Reduces frames to about a sixteenth of the picture, spread over its tiles; a small picture stays whole. Leaves other
 // pixels unchanged. Returns the number of pixels.
 std::uint32_t take_part(Rig* rig);

@@ -6,7 +6,6 @@
 #include "base/check.h"
 #include "base/seal.h"
 #include "engine/frame.h"
-#include "engine/last_picture.h"
 #include "present/repack.h"
 #include "session/interrupt.h"
 #include "viewer/follow.h"
@@ -134,34 +133,18 @@ bool can_refine(const Viewer& viewer, const Renderer& renderer, const ViewerLoop
   return loop.refines || (renderer.effects.mask & kInterpolating) != 0;
 }
 
-// Begins the exact picture: half of it, if the other half is in the last one, or all.
-Status begin_exact(Renderer* renderer, double seconds) {
-  Quality exact = renderer->settings;
-  exact.moving_contrast = MovingContrast::as_resting;
-  if (exact.resolution == Resolution::interleaved) {
-    exact.selective_contrast = 0;
-    RETURN_IF_ERROR(set_quality(renderer, exact));
-    RETURN_IF_ERROR(prepare_frame(renderer, seconds));
-    follow_picture(renderer);
-    if (renderer->frame.last && renderer->frame.last->rests) return success();
-  }
-  exact.selective_contrast = 0, exact.resolution = Resolution::full;
-  RETURN_IF_ERROR(set_quality(renderer, exact));
-  RETURN_IF_ERROR(prepare_frame(renderer, seconds));
-  follow_picture(renderer);
-  return success();
-}
-
 // Traces a slice of the exact picture, over one with interpolated pixels.
 Status refine(Viewer* viewer, Renderer* renderer, ViewerLoop* loop) {
   if (!loop->refines) {
     loop->quality = renderer->settings;
     loop->refines = true;
-    RETURN_IF_ERROR(begin_exact(renderer, loop->seconds));
+    Quality exact = renderer->settings;
+    exact.selective_contrast = 0, exact.resolution = Resolution::full;
+    RETURN_IF_ERROR(set_quality(renderer, exact));
+    RETURN_IF_ERROR(prepare_frame(renderer, loop->seconds));
     loop->progressive = afresh();
   }
   loop->exact = advance_progressive(renderer, loop->tile_spans, slice_end(*renderer), &loop->progressive);
-  if (loop->exact) keep_picture(renderer);
   write_picture_lines(*viewer, *renderer, loop);
   std::uint32_t begin = 0, end = 0;
   take_dirty_rows(&loop->progressive, &begin, &end);

@@ -123,7 +123,7 @@ TEST_CASE("sweep_plan_measures_a_ladder_beside_the_knobs") {
   for (std::size_t i = 0; i < plan.points.size(); ++i) {
     const Configuration& c = plan.points[i].configuration;
     bool is_choice = c.output == baseline.output && c.sphere_columns == baseline.sphere_columns &&
-                     !c.double_precision && !c.near_lossless;
+                     !c.near_lossless;
     CHECK(plan.points[i].is_choice == is_choice);
     front += sweep.measured[i].pareto && is_choice, others += sweep.measured[i].pareto && !is_choice;
   }
@@ -243,11 +243,6 @@ TEST_CASE("sweep_sums_up_what_was_measured") {
     CHECK(k.ms_per_flip == doctest::Approx(18.0 / 7.5));
   }
   CHECK(sixteen.pareto);
-  CHECK_FALSE(measured_as(sweep, "arithmetic", "double").pareto);  // not a setting of the renderer
-  for (const KnobFigures& k : sweep.knobs)
-    if (k.name == "arithmetic") CHECK(std::isnan(k.ms_per_flip));  // nor a price: its time is another tracer's
-  CHECK(measured_as(sweep, "arithmetic", "double").note.find("reference's own tracer") != std::string::npos);
-  CHECK(measured_as(sweep, "arithmetic", "float").note.empty());
   int front = 0;
   for (const Measured& m : sweep.measured) front += m.pareto;
   // A coarse reference allows fewer claims: no slope of errors below its limit, no small steps on the front.

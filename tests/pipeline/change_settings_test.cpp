@@ -61,7 +61,7 @@ TEST_CASE("change_settings_equals_a_fresh_start") {
     Settings settings = settings_for(features, 16, 12);
     settings.points_per_area_light = 9;
     Settings planned = settings;
-    planned.resolution = Resolution::interleaved, planned.moving_contrast = MovingContrast::as_seen;
+    planned.resolution = Resolution::half;
     auto changed = make_renderer(generated->scene, planned);
     std::vector<Vec3> before = picture_of(&changed->renderer);
     int differing = 0;

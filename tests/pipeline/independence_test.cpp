@@ -24,7 +24,7 @@ struct Traced {
 };
 constexpr Traced kAll = {};
 constexpr Traced kSome[] = {
-    {0.25f, Resolution::full}, {0, Resolution::checkerboard}, {0.25f, Resolution::half}, {0, Resolution::two_thirds}};
+    {0.25f, Resolution::full}, {0, Resolution::checkerboard}, {0.25f, Resolution::half}};
 constexpr Traced kAllOrSome[] = {kAll, kSome[0], kSome[1], kSome[2]};
 
 Settings small_settings(const Traced& traced = kAll) {

@@ -144,9 +144,6 @@ TEST_CASE("plan_effects_give_reasons") {
   settings.resolution = Resolution::checkerboard;
   CHECK(reason(plan_effects(generate_scene(features, 1)->scene, settings), Effect::undersampling) ==
         "half of the pixels traced");
-  settings.resolution = Resolution::interleaved;
-  CHECK(reason(plan_effects(generate_scene(features, 1)->scene, settings), Effect::undersampling) ==
-        "each half in turn of the pixels traced");
   settings.resolution = Resolution::half;
   plan = plan_effects(generate_scene(features, 1)->scene, settings);
   CHECK(reason(plan, Effect::undersampling) == "a quarter of the pixels traced");

@@ -50,11 +50,11 @@ Picture undersampled(const Picture& exact, Resolution resolution, int width, int
       for (int x = 1; x < width; x += 2) oracle.replace(x, y, 1, 1);
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; ++x)
-      if (resolution == Resolution::two_thirds ? (x + y) % 3 == 2 : (x + y) % 2 == 1) oracle.replace(x, y, 1, 0);
+      if ((x + y) % 2 == 1) oracle.replace(x, y, 1, 0);
   return oracle.pixels;
 }
 
-constexpr Resolution kResolutions[] = {Resolution::checkerboard, Resolution::half, Resolution::two_thirds};
+constexpr Resolution kResolutions[] = {Resolution::checkerboard, Resolution::half};
 
 }  // namespace
 
@@ -106,14 +106,13 @@ TEST_CASE("lattice_is_traced_once") {
         CHECK(before == 0);
         CHECK(total_counts(test->renderer).rays[static_cast<int>(RayKind::primary)] == expected);
         const std::uint32_t count = width * height;
-        const std::uint32_t traced_max = resolution == Resolution::half         ? (width + 1) * (height + 1) / 4
-                                         : resolution == Resolution::two_thirds ? 2 * (count + 1) / 3
-                                                                                : (count + 1) / 2;
+        const std::uint32_t traced_max =
+            resolution == Resolution::half ? (width + 1) * (height + 1) / 4 : (count + 1) / 2;
         CHECK(expected <= traced_max);
       }
 }
 
-// Goal: upright and level edges are as sharp on a checkerboard, or of two thirds, as traced, wherever they lie. Method:
+// Goal: upright and level edges are as sharp on a checkerboard as traced, wherever they lie. Method:
 // a bright half-plane before a dark one; the picture equals the exact one.
 TEST_CASE("lattice_keeps_upright_edges") {
   for (int i = 0; i < 12; ++i)
@@ -136,9 +135,7 @@ TEST_CASE("lattice_keeps_upright_edges") {
       const Picture exact = render_picture(s.scene, settings);
       CAPTURE(i);
       CAPTURE(level);
-      for (Resolution resolution : {Resolution::checkerboard, Resolution::two_thirds}) {
-        settings.resolution = resolution;
-        CHECK(same_picture(render_picture(s.scene, settings), exact));
-      }
+      settings.resolution = Resolution::checkerboard;
+      CHECK(same_picture(render_picture(s.scene, settings), exact));
     }
 }

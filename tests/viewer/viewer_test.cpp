@@ -313,7 +313,7 @@ TEST_CASE("viewer_refines_what_rests") {
     CHECK(!same_picture(moved, exact));
     for (int i = 0; i < 4; ++i) {
       some.selective_contrast = i % 3 == 0 ? 0.25f : 0;
-      some.resolution = i == 0 ? Resolution::full : i == 1 ? Resolution::half : Resolution::interleaved;
+      some.resolution = i == 0 ? Resolution::full : i == 1 ? Resolution::half : Resolution::checkerboard;
       CHECK(same_picture(picture_at(20, some, budgeted, 0), exact));
       CHECK(same_picture(picture_at(40, some, budgeted, 19), moved));
       Quality last;

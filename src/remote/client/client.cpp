@@ -309,8 +309,6 @@ void begin_client_frame(Client* client, const Renderer& renderer, const FrameSta
   q->camera.node = kNone;
   q->settings = renderer.settings;
   if (client->light.by_effect) q->settings.indirect = client->options.light.indirect;
-  if (q->settings.resolution == Resolution::interleaved)
-    q->settings.resolution = Resolution::checkerboard;  // what the device traces of it, too: no server has the last one
   q->exposure = renderer.exposure;
   q->dither = client->options.dither;
   q->format = client->options.format;
