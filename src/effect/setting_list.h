@@ -11,8 +11,6 @@
 namespace pocketray {
 
 inline constexpr const char* kTextureFilterNames[] = {"scene", "nearest", "bilinear", "trilinear", "anisotropic"};
-inline constexpr const char* kAreaShadowsNames[] = {"adaptive", "every"};
-inline constexpr const char* kAreaIrradianceNames[] = {"points", "analytic"};
 inline constexpr const char* kNormalNames[] = {"scene", "flat"};
 inline constexpr const char* kResolutionNames[] = {"full", "checkerboard", "half"};
 inline constexpr const char* kCompensationNames[] = {"none", "rays"};
@@ -92,32 +90,6 @@ inline constexpr SettingRow kSettingList[] = {
      {1, 4, 9, 16, 36, 64, 144, 256},
      points_price,
      "-1/2 for random points; a grid of n points errs by one shadow edge of n, down to -1"},
-    {"area-shadows",
-     "points of an area light that get shadow rays",
-     "adaptive: all where it is partly hidden, few elsewhere",
-     nullptr,
-     choice_field<&Quality::area_shadows>(kAreaShadowsNames),
-     1,
-     bit(Effect::area_light),
-     bit(Effect::area_light),
-     true,
-     double(AreaShadows::every),
-     {double(AreaShadows::adaptive), double(AreaShadows::every)},
-     nullptr,
-     ""},
-    {"area-irradiance",
-     "light from flat lamps that nothing hides, and their highlights",
-     "analytic: in closed form; points: the sum over their points",
-     nullptr,
-     choice_field<&Quality::area_irradiance>(kAreaIrradianceNames),
-     1,
-     bit(Effect::area_light),
-     bit(Effect::area_light),
-     true,
-     double(AreaIrradiance::analytic),
-     {double(AreaIrradiance::points), double(AreaIrradiance::analytic)},
-     nullptr,
-     ""},
     {"cut-off",
      "largest error per pixel from skipped rays, in display levels",
      "0: trace every ray",

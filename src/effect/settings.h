@@ -38,8 +38,6 @@ struct Quality {
   std::uint32_t samples_per_pixel = 1;
   std::uint32_t ray_depth = 8;  // reflections and refractions along a path
   std::uint32_t points_per_area_light = 4;
-  AreaShadows area_shadows = AreaShadows::adaptive;
-  AreaIrradiance area_irradiance = AreaIrradiance::analytic;
   float cut_off_levels = 0.5f;  // largest error per sample from skipped rays, in display levels; 0: skip none
   TextureFilter texture_filter = TextureFilter::as_scene;
   NormalMode normals = NormalMode::as_scene;
@@ -64,6 +62,9 @@ struct Settings : Quality {
   CoherenceMode coherence = CoherenceMode::off;
   std::uint32_t coherence_table = 16;  // blocks of pixels along each side, a bit of each voxel's table [Jevans92]
   bool coherence_by_tables = false;    // the paper's way, for comparison: all rays in tables
+  // For tests, which compare with what these replace.
+  AreaShadows area_shadows = AreaShadows::adaptive;
+  AreaIrradiance area_irradiance = AreaIrradiance::analytic;
 };
 
 }  // namespace pocketray

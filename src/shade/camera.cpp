@@ -43,6 +43,8 @@ Status make_camera_rays(const Camera& camera, std::uint32_t width, std::uint32_t
 }
 
 bool place_in_picture(const CameraRays& c, const Vec3& point, Vec2* place) {
+  CHECK(place != nullptr);
+  CHECK(c.width > 0 && c.height > 0);
   const Vec3 to_point = point - c.eye;
   const float depth = c.orthographic ? 1 : dot(to_point, c.forward);
   if (!(depth > 0)) return false;

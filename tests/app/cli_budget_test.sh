@@ -4,7 +4,7 @@
 
 # Goal: settings along a front keep a time budget; their prices are stored, and the choice is reported. Method: a front of
 # one candidate gives the picture of its settings; files in a cache of their own; budgets beyond any machine in both ways.
-one="samples=2 depth=1 area-lights=2 area-shadows=adaptive area-irradiance=analytic cut-off=0 texture-filter=nearest normals=flat indirect=auto reconstruction=bicubic virtual-lights=64 selective=0 resolution=full light-tolerance=0.0625 environment-shadows=32"
+one="samples=2 depth=1 area-lights=2 cut-off=0 texture-filter=nearest normals=flat indirect=auto reconstruction=bicubic virtual-lights=64 selective=0 resolution=full light-tolerance=0.0625 environment-shadows=32"
 printf 'pocketray-front 1\n%s flip=0.25 ns=1\n' "$one" >one.front
 expect budget_front_file 0 'expected ꟻLIP 0.2500; traded away: nothing' \
   render "$subject" "${small[@]}" --budget-ms 1000000 --front one.front -o budget.ppm
@@ -18,7 +18,7 @@ expect budget_front_read_only 0 'prices are not saved' \
 check budget_front_read_only_renders cmp -s budget.ppm kept.ppm
 # The scene has neither area lights nor reflections, and the last candidate is dominated: all remain, each with its own
 # price.
-quality="area-shadows=adaptive area-irradiance=analytic cut-off=0 texture-filter=nearest normals=flat indirect=auto reconstruction=bicubic virtual-lights=64 selective=0 resolution=full light-tolerance=0.0625 environment-shadows=32"
+quality="cut-off=0 texture-filter=nearest normals=flat indirect=auto reconstruction=bicubic virtual-lights=64 selective=0 resolution=full light-tolerance=0.0625 environment-shadows=32"
 printf "pocketray-front 1\n%s $quality flip=%s ns=%s\n%s $quality flip=%s ns=%s\n%s $quality flip=%s ns=%s\n" \
   'samples=1 depth=1 area-lights=1' 0.5 1 'samples=1 depth=3 area-lights=4' 0.25 2 'samples=2 depth=4 area-lights=1' 0.75 3 \
   >three.front
@@ -54,7 +54,7 @@ done
 expect front_without_budget 1 'choose from: add one of them' render cube "${small[@]}" --front one.front -o refused.ppm
 # Goal: --flip-max takes the fastest settings whose error was measured to be small enough, whatever they take, and with a
 # time the best of these. Method: three candidates whose pictures differ; the picture of each by name.
-rest="depth=1 area-lights=1 area-shadows=adaptive area-irradiance=analytic cut-off=0 texture-filter=nearest normals=flat indirect=auto reconstruction=bicubic virtual-lights=64 light-tolerance=0.0625 environment-shadows=32"
+rest="depth=1 area-lights=1 cut-off=0 texture-filter=nearest normals=flat indirect=auto reconstruction=bicubic virtual-lights=64 light-tolerance=0.0625 environment-shadows=32"
 printf "pocketray-front 1\nsamples=1 $rest selective=0.5 resolution=half flip=0.1 ns=100\nsamples=1 $rest selective=0 resolution=full flip=0.02 ns=1000\nsamples=9 $rest selective=0 resolution=full flip=0.01 ns=9000\n" >errors.front
 cp errors.front as_measured.front
 settings=(--depth 1 --area-lights 1 --cut-off 0 --texture-filter nearest --normals flat)

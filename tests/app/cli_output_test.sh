@@ -4,7 +4,7 @@
 
 tiny=(--size 8x6 --threads 1)
 has() { "${run[@]}" --help | grep -q "^ *$1 "; }
-quality="samples=1 depth=1 area-lights=1 area-shadows=adaptive area-irradiance=analytic cut-off=0 texture-filter=nearest normals=flat indirect=auto reconstruction=bicubic virtual-lights=64 selective=0 resolution=full light-tolerance=0.0625 environment-shadows=32"
+quality="samples=1 depth=1 area-lights=1 cut-off=0 texture-filter=nearest normals=flat indirect=auto reconstruction=bicubic virtual-lights=64 selective=0 resolution=full light-tolerance=0.0625 environment-shadows=32"
 mode_of() { stat -c %a "$1"; }
 
 # Goal: replacing a file keeps its permissions and a link to it, and a pipe stays a pipe. Method: each of them, with each kind

@@ -137,7 +137,7 @@ std::vector<FuzzSeed> front_seeds() {
   return {{"builtin", text_of(front)},
           {"with_prices", both},
           {"comments", bytes_of("pocketray-front 1\r\n\n# what follows\nsamples=4 depth=8 area-lights=16 "
-                                "area-shadows=every area-irradiance=points cut-off=5e-1 "
+                                "cut-off=5e-1 "
                                 "texture-filter=nearest normals=flat indirect=auto reconstruction=bicubic "
                                 "virtual-lights=64 selective=0 resolution=full light-tolerance=0.0625 "
                                 "environment-shadows=32 flip=1 ns=1e9\n")},

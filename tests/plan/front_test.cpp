@@ -16,7 +16,7 @@ namespace {
 
 const std::string kHead = "pocketray-front 1\n";
 const std::string kLine =
-    "samples=4 depth=8 area-lights=16 area-shadows=adaptive area-irradiance=analytic cut-off=0.5 "
+    "samples=4 depth=8 area-lights=16 cut-off=0.5 "
     "texture-filter=scene normals=scene indirect=auto "
     "reconstruction=bicubic virtual-lights=64 selective=0 resolution=full light-tolerance=0.0625 "
     "environment-shadows=32 flip=0.0123 "
@@ -103,7 +103,7 @@ TEST_CASE("front_text_is_as_documented") {
   REQUIRE(parse(kHead + "# as measured\r\n\r\nns=812  flip=0.0123 samples=4 normals=scene indirect=auto "
                         "reconstruction=bicubic virtual-lights=64 selective=0 resolution=full light-tolerance=0.0625 "
                         "environment-shadows=32 "
-                        "depth=8 area-lights=16 area-shadows=adaptive area-irradiance=analytic "
+                        "depth=8 area-lights=16 "
                         "texture-filter=scene cut-off=5e-1\r\n",
                 &other)
               .ok);
@@ -136,7 +136,7 @@ TEST_CASE("front_text_faults_are_named") {
       {kHead + kLine.substr(0, kLine.find("flip=")) + "flip=1.5 ns=1\n", "'flip=1.5'"},
       {kHead + kLine.substr(0, kLine.find("flip=")) + "flip=nan ns=1\n", "'flip=nan'"},
       {kHead + "cut-off=65 " +
-           "samples=4 depth=8 area-lights=16 area-shadows=every area-irradiance=points texture-filter=scene "
+           "samples=4 depth=8 area-lights=16 texture-filter=scene "
            "normals=scene indirect=auto "
            "reconstruction=bicubic "
            "virtual-lights=64 selective=0 resolution=full light-tolerance=0.0625 environment-shadows=32 "
@@ -158,7 +158,7 @@ TEST_CASE("front_text_faults_are_named") {
   std::string many = kHead;
   for (std::uint32_t i = 1; i <= kFrontCandidateMax + 1; ++i)
     many += "samples=1 depth=8 area-lights=" + std::to_string(i) +
-            " area-shadows=every area-irradiance=points cut-off=0 texture-filter=scene normals=flat indirect=auto "
+            " cut-off=0 texture-filter=scene normals=flat indirect=auto "
             "reconstruction=bicubic "
             "virtual-lights=64 "
             "selective=0 resolution=full light-tolerance=0.0625 environment-shadows=32 ns=" +

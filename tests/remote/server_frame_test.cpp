@@ -125,17 +125,9 @@ TEST_CASE("server_frames_follow_every_setting") {
     double usual = row.field.get(plain.settings);
     double coarse = row.sweep.values[row.sweep.values[0] == usual ? row.sweep.count / 2 : 0];
     if (row.effects == bit(Effect::instant_radiosity)) continue;  // below
-    // The scene stores no radiosity; among many lights, area lights have neither groups nor polygons.
-    const std::string name = row.name;
-    const bool shows = name != "reconstruction" && name != "area-shadows" && name != "area-irradiance";
+    const bool shows = row.name != std::string("reconstruction");  // the scene stores no radiosity
     check_and_back([&](FrameRequest* r) { row.field.set(&r->settings, coarse); }, shows);
   }
-  for (const char* name : {"area-shadows", "area-irradiance"})
-    for (double choice : {0.0, 1.0}) {
-      request = plain, request.settings.light_tolerance = 0, request.settings.points_per_area_light = 64;
-      find_setting(name)->field.set(&request.settings, choice);
-      check(request, choice == 0 || name == std::string("area-irradiance"));
-    }
   for (std::uint32_t count : {16u, 64u}) {
     request = plain;
     request.settings.indirect = indirect_choice(Effect::instant_radiosity), request.settings.virtual_lights = count;

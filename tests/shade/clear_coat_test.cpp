@@ -345,10 +345,10 @@ TEST_CASE("clear_coat_is_traced_where_it_is_not_smooth") {
     Surface surface;
     const Ray ray = {{0.1f, 0.2f, 3}, {0, 0, -1}, 10};
     frame.surface(frame, ray, {3, 0.25f, 0.25f, 0}, &surface);
-    CellCorner corner = {{1, 1, 1}, surface.diffuse, surface.glow, surface.normal, surface.material, 1, true, true};
+    CellCorner corner = {{1, 1, 1}, surface.diffuse, surface.glow, surface.normal, surface.material, true, true};
     CAPTURE(kind);
     CHECK(has_smooth_light(frame, surface) == (kind != 1));
-    CHECK(is_flat(frame, {{&corner, &corner, &corner, &corner}, 0.25f, 0.25f, 0}, 0.1f) == (kind < 2));
+    CHECK(is_flat(frame, {{&corner, &corner, &corner, &corner}, 0.25f, 0.25f}, 0.1f) == (kind < 2));
   }
 }
 

@@ -233,7 +233,7 @@ def test_malformed(server, scenes):
               dict(camera=dict(CAMERA, fov=0.0)), dict(camera=dict(CAMERA, fov=3.13)), dict(stated=1, camera=dict(CAMERA, fov=3.13)),
               dict(camera=dict(CAMERA, extent=-1.0, projection=1)), dict(camera=dict(CAMERA, extent=0.0)),
               dict(camera=dict(CAMERA, projection=2)), dict(width=0), dict(width=8193), dict(height=0, end=0), dict(height=8193),
-              dict(samples=0), dict(samples=17), dict(depth=17), dict(points=0), dict(points=257), dict(area_shadows=2), dict(area_irradiance=2), dict(cut_off=-1.0),
+              dict(samples=0), dict(samples=17), dict(depth=17), dict(points=0), dict(points=257), dict(cut_off=-1.0),
               dict(cut_off=65.0), dict(filter=5), dict(normals=2), dict(indirect=5), dict(virtual_lights=0), dict(virtual_lights=513), dict(compensation=2), dict(reconstruction=5), dict(selective=1.5), dict(selective=-0.5), dict(resolution=3), dict(light_tolerance=1.5), dict(light_tolerance=-0.5), dict(environment_shadows=257), dict(on=1 << 63), dict(off=1 << len(EFFECTS)),
               dict(exposure=-1.0),
               dict(exposure=big), dict(exposure=8e-19), dict(dither=2), dict(format=2), dict(first=36), dict(first=9, end=9), dict(end=37),

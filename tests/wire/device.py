@@ -74,7 +74,7 @@ def pack_camera(camera):
                        camera["projection"])
 
 
-DEFAULTS = dict(frame=1, time=0.0, animation=0, wanted=b"", stated=0, index=0, camera=CAMERA, width=48, height=36, samples=1, depth=8, points=4, area_shadows=0, area_irradiance=1,
+DEFAULTS = dict(frame=1, time=0.0, animation=0, wanted=b"", stated=0, index=0, camera=CAMERA, width=48, height=36, samples=1, depth=8, points=4,
                 cut_off=0.5, filter=0, normals=0, indirect=0, reconstruction=2, virtual_lights=64, compensation=0, selective=0.0, resolution=0, light_tolerance=0.0625, environment_shadows=32, on=0, off=0, exposure=0.0, dither=0, format=RGB888, first=0, end=None,
                 largest=16, coding=1, coarse=0, pitch=0, order=(), measure=0)
 
@@ -84,7 +84,7 @@ def request(scene, kind=FRAME_REQUEST, **changes):
     end = r["height"] if r["end"] is None else r["end"]
     pitch = struct.pack("<B", r["pitch"]) if kind == FRAME_REQUEST else b""
     rows = struct.pack("<B", r["coarse"]) + pitch + struct.pack("<HH", r["first"], end) + bytes(x for run in r["order"] for x in run)
-    settings = struct.pack("<HHBBHBBfBBBBHBfBfHQQ", r["width"], r["height"], r["samples"], r["depth"], r["points"], r["area_shadows"], r["area_irradiance"], r["cut_off"],
+    settings = struct.pack("<HHBBHfBBBBHBfBfHQQ", r["width"], r["height"], r["samples"], r["depth"], r["points"], r["cut_off"],
                            r["filter"], r["normals"], r["indirect"],
                            r["reconstruction"], r["virtual_lights"], r["compensation"], r["selective"], r["resolution"], r["light_tolerance"],
                            r["environment_shadows"], r["on"], r["off"])

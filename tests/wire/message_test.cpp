@@ -234,17 +234,15 @@ TEST_CASE("message_values_out_of_range_are_refused") {
       {MessageType::frame_request, 8 + 88, {17}},    // depth
       {MessageType::frame_request, 8 + 89, {0, 0}},  // points
       {MessageType::frame_request, 8 + 89, {1, 1}},
-      {MessageType::frame_request, 8 + 91, {2}},                           // area shadows
-      {MessageType::frame_request, 8 + 92, {2}},                           // area irradiance
-      {MessageType::frame_request, 8 + 93, nan},                           // cut-off
-      {MessageType::frame_request, 8 + 93, {0, 0, 0x82, 0x42}},            // 65 levels
-      {MessageType::frame_request, 8 + 93, {0, 0, 0x80, 0xBF}},            // −1
-      {MessageType::frame_request, 8 + 97, {5}},                           // filter
-      {MessageType::frame_request, 8 + 98, {2}},                           // normals
-      {MessageType::frame_request, 8 + 99, {kIndirectChoiceCount}},        // indirect
-      {MessageType::frame_request, 8 + 100, {5}},                          // reconstruction
-      {MessageType::frame_request, 8 + 103, {2}},                          // compensation
-      {MessageType::frame_request, 8 + 104, nan},                          // selective
+      {MessageType::frame_request, 8 + 91, nan},                           // cut-off
+      {MessageType::frame_request, 8 + 91, {0, 0, 0x82, 0x42}},            // 65 levels
+      {MessageType::frame_request, 8 + 91, {0, 0, 0x80, 0xBF}},            // −1
+      {MessageType::frame_request, 8 + 95, {5}},                           // filter
+      {MessageType::frame_request, 8 + 96, {2}},                           // normals
+      {MessageType::frame_request, 8 + 97, {kIndirectChoiceCount}},        // indirect
+      {MessageType::frame_request, 8 + 98, {5}},                          // reconstruction
+      {MessageType::frame_request, 8 + 101, {2}},                          // compensation
+      {MessageType::frame_request, 8 + 102, nan},                          // selective
       {MessageType::frame_request, 8 + more + 113, {0, 0, 0x80, 0xBF}},    // exposure −1
       {MessageType::frame_request, 8 + more + 104, {1}},                   // an effect that is none, on
       {MessageType::frame_request, 8 + more + 112, {1}},                   // and off
