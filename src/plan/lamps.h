@@ -10,9 +10,9 @@ struct Lamp {
   std::uint32_t begin, end;  // range of the triangles among which its own are
 };
 
-// Divided, so that each piece has a polygon: materials of two to kPiecesMax planes whose triangles rest; of them, convex
-// bodies of more than kConvexPiecesMax, such as bulbs, are not, whose pieces do not light each other. If that would make
-// more lamps than there can be whatever the points of each, no material is divided.
+// Divided, so that each piece has a polygon: materials of two to kPiecesMax planes whose triangles rest; of them,
+// convex bodies of more than kConvexPiecesMax, such as bulbs, are not, whose pieces do not light each other. If that
+// would make more lamps than there can be whatever the points of each, no material is divided.
 constexpr std::uint32_t kPiecesMax = 16, kConvexPiecesMax = 6;  // chosen: a box
 constexpr std::uint32_t kDividedLampsMax = 16;
 

@@ -1,0 +1,21 @@
+// Counts of what may call for an effect.
+#pragma once
+#include "effect/settings.h"
+#include "scene/scene.h"
+
+namespace pocketray {
+
+// Counts of materials with a property, among those that triangles use.
+struct Census {
+  std::uint32_t materials = 0, specular = 0, mirror = 0, transmitting = 0, absorbing = 0, masked = 0, blended = 0,
+                emissive = 0, unlit = 0, textured = 0, scattering = 0, one_sided = 0, reflecting = 0, diffuse = 0,
+                metallic_roughness = 0, bumpy = 0, occluded = 0, with_levels = 0, grained = 0, second_uv = 0,
+                second_uv_occlusion = 0,  // of the latter, only that of occlusion
+      coated = 0;
+  std::uint32_t lights[3] = {0, 0, 0};
+};
+
+// Counts the scene's materials and lights. If emission is forced off, unlit materials scatter like others.
+Census take_census(const Scene& scene, const Settings& settings);
+
+}  // namespace pocketray

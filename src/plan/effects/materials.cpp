@@ -1,0 +1,57 @@
+#include "effect/setting_list.h"
+#include "plan/effects/rule.h"
+#include "shade/texture.h"
+
+namespace pocketray {
+namespace {
+
+EffectDecision decide_emission(const EffectCall& c) {
+  return by_materials(c, c.census.emissive + c.census.unlit, c.census.unlit ? "emit or are unlit" : "emit");
+}
+
+EffectDecision decide_mip_map(const EffectCall& c) {
+  const TextureFilter filter = c.settings.texture_filter;
+  return takes_levels(filter) ? by_materials(c, c.census.with_levels, "have a texture with levels")
+                              : decided(false, "--texture-filter %s", kTextureFilterNames[static_cast<int>(filter)]);
+}
+
+EffectDecision decide_vertex_color(const EffectCall& c) {
+  const bool any = c.scene.colors.count > 0;
+  return decided(any, any ? "vertices have colours" : "no vertex has a colour");
+}
+
+EffectDecision decide_smooth_normal(const EffectCall& c) {
+  if (c.scene.normals.count == 0) return decided(false, "no vertex has a normal");
+  const bool as_scene = c.settings.normals == NormalMode::as_scene;
+  return decided(as_scene, as_scene ? "vertices have normals" : "flat normals requested");
+}
+
+constexpr EffectRule kRules[] = {
+    {Effect::specular, [](const EffectCall& c) { return by_materials(c, c.census.specular, "shine"); }},
+    {Effect::mirror, [](const EffectCall& c) { return by_materials(c, c.census.mirror, "mirror"); }},
+    {Effect::refraction, [](const EffectCall& c) { return by_materials(c, c.census.transmitting, "transmit"); }},
+    {Effect::absorption, [](const EffectCall& c) { return by_materials(c, c.census.absorbing, "absorb"); }},
+    {Effect::alpha_mask, [](const EffectCall& c) { return by_materials(c, c.census.masked, "have holes"); }},
+    {Effect::alpha_blend,
+     [](const EffectCall& c) { return by_materials(c, c.census.blended, "blend with the background"); }},
+    {Effect::emission, decide_emission},
+    {Effect::texture, [](const EffectCall& c) { return by_materials(c, c.census.textured, "have a texture"); }},
+    {Effect::metallic_roughness,
+     [](const EffectCall& c) {
+       return by_materials(c, c.census.metallic_roughness, "have a metallic-roughness or specular texture");
+     }},
+    {Effect::normal_map, [](const EffectCall& c) { return by_materials(c, c.census.bumpy, "have a normal texture"); }},
+    {Effect::anisotropy, [](const EffectCall& c) { return by_materials(c, c.census.grained, "have a grain"); }},
+    {Effect::clear_coat, [](const EffectCall& c) { return by_materials(c, c.census.coated, "have a clear coat"); }},
+    {Effect::mip_map, decide_mip_map},
+    {Effect::back_face_culling,
+     [](const EffectCall& c) { return by_materials(c, c.census.one_sided, "are one-sided"); }},
+    {Effect::vertex_color, decide_vertex_color},
+    {Effect::smooth_normal, decide_smooth_normal},
+};
+
+}  // namespace
+
+Array<const EffectRule> material_rules() { return {kRules, sizeof kRules / sizeof kRules[0]}; }
+
+}  // namespace pocketray

@@ -1,0 +1,48 @@
+#include "base/check.h"
+#include "plan/effects/rule.h"
+
+namespace pocketray {
+namespace {
+
+EffectDecision decide_supersampling(const EffectCall& c) {
+  const std::uint32_t samples = c.settings.samples_per_pixel;
+  return decided(samples > 1, "%u sample%s per pixel", samples, samples == 1 ? "" : "s");
+}
+
+EffectDecision decide_selective(const EffectCall& c) {
+  const float contrast = c.settings.selective_contrast;
+  if (contrast == 0) return decided(false, "every pixel traced");
+  if (needs_every_pixel(c)) return decided(false, "instant radiosity needs every pixel");
+  return decided(true, "contrasts below %.3g interpolated", static_cast<double>(contrast));
+}
+
+EffectDecision decide_undersampling(const EffectCall& c) {
+  switch (c.settings.resolution) {
+    case Resolution::full:
+      return decided(false, "all of the pixels traced");
+    case Resolution::checkerboard:
+    case Resolution::half:
+      break;
+  }
+  if (needs_every_pixel(c)) return decided(false, "instant radiosity needs every pixel");
+  return decided(true, "%s of the pixels traced", c.settings.resolution == Resolution::half ? "a quarter" : "half");
+}
+
+EffectDecision decide_animation(const EffectCall& c) {
+  if (!is_animated(c.scene)) return decided(false, "nothing moves");
+  const std::uint32_t count = c.scene.animations.count;
+  return decided(true, "%u animation%s", count, count == 1 ? "" : "s");
+}
+
+constexpr EffectRule kRules[] = {
+    {Effect::supersampling, decide_supersampling},
+    {Effect::selective, decide_selective},
+    {Effect::undersampling, decide_undersampling},
+    {Effect::animation, decide_animation},
+};
+
+}  // namespace
+
+Array<const EffectRule> picture_rules() { return {kRules, sizeof kRules / sizeof kRules[0]}; }
+
+}  // namespace pocketray

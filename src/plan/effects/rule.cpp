@@ -1,0 +1,43 @@
+#include "plan/effects/rule.h"
+
+#include <cstdarg>
+#include <cstdio>
+
+#include "base/check.h"
+#include "base/limits.h"
+#include "indirect/environment.h"
+
+namespace pocketray {
+
+EffectDecision decided(bool on, const char* format, ...) {
+  CHECK(format != nullptr);
+  EffectDecision decision;
+  decision.on = on;
+  va_list arguments;
+  va_start(arguments, format);
+  std::vsnprintf(decision.reason, sizeof decision.reason, format, arguments);
+  va_end(arguments);
+  return decision;
+}
+
+EffectDecision by_materials(const EffectCall& call, std::uint32_t count, const char* verb) {
+  const std::uint32_t all = call.census.materials;
+  CHECK_LE(count, all);
+  return count ? decided(true, "%u of %u materials %s", count, all, verb)
+               : decided(false, "none of %u materials %s", all, verb);
+}
+
+EffectDecision by_count(std::uint32_t count, const char* what) {
+  CHECK(what != nullptr);
+  return count ? decided(true, "%u %s%s", count, what, count == 1 ? "" : "s") : decided(false, "no %s", what);
+}
+
+bool selects_lights(const EffectCall& call) {
+  return call.settings.light_tolerance > 0 && call.census.emissive + call.scene.lights.count >= kSelectedLightsMin;
+}
+
+bool shows_environment(const EffectCall& call) {
+  return environment_of(call.scene) && !has(call.settings.forced_off, Effect::environment);
+}
+
+}  // namespace pocketray
