@@ -8,6 +8,9 @@ cd "$1"
 ranks="base=0 scene=1 effect=1 brdf=2 accel=2 indirect=3 shade=4 temporal=5 split=5 present=5 wire=5 reference=5 radiosity=5 plan=6 import=6 accuracy=6
   engine=7 session=8 remote=9 budget=9 viewer=10 sweep=10 split_report=10 coherence_report=10 app=11"
 line_count_max=450
+# Comments say what a thing is, not what it shares with the one above: so many may open with a back-reference.
+back_reference='^[[:space:]]*// (Of|The same|That|Those|What|Whether)\b'
+back_reference_max=20
 
 # heap_rooms may use the heap; all others, and platform/, are the core. platform_rooms may include the platform.
 heap_rooms='reference|radiosity|accuracy|import|session|remote|budget|viewer|sweep|split_report|coherence_report|app'
@@ -133,6 +136,13 @@ check_types() {
     }')
 }
 
+# Comments that open with a back-reference, if they are too many.
+check_openings() {
+  grep -v '^tests/' "$plain/.all" | tr '\n' '\0' | xargs -0 -r grep -HnE "$back_reference" >"$plain/.openings" || true
+  [ "$(wc -l <"$plain/.openings")" -le $back_reference_max ] ||
+    awk -F: '{ print $1 ":" $2 ": comment opens with a back-reference" }' "$plain/.openings"
+}
+
 find src platform tests -type f \( -name '*.h' -o -name '*.cpp' -o -name '*.inl' \) 2>/dev/null | sort >"$plain/.all" || true
 grep -vE "^(src/($heap_rooms)/|$heap_files$|tests/)" "$plain/.all" >"$plain/.core" || true
 grep '^src/' "$plain/.core" >"$plain/.core_src" || true
@@ -141,6 +151,7 @@ strip_sources
 {
   check_includes
   check_types
+  check_openings
   forbid "$plain/.portable" "$systems" "an operating system is named outside platform/"
   forbid "$plain/.core_src" "$libm" "libm function in the core: use base/fmath.h"
   forbid "$plain/.core" "$language" "exceptions or RTTI in the core"
