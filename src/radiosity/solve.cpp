@@ -7,6 +7,7 @@
 #include "base/check.h"
 #include "base/fmath.h"
 #include "radiosity/barriers.h"
+#include "radiosity/bodies.h"
 #include "radiosity/corners.h"
 #include "radiosity/refine.h"
 #include "radiosity/tangents.h"
@@ -69,13 +70,15 @@ Vec3d gather(const SceneRays& rays, const PatchLight& light, const Receiver& at,
              std::uint32_t seed) {
   const Outlook outlook = look_around(rays, at, kNodeRays, seed);
   if (outlook.back > kCovered) return {-1, 0, 0};
-  const bool through_backs = on_grid && outlook.back < kBesideBacks;
+  const Backs backs = on_grid && outlook.back < kBesideBacks ? Backs::hide_nothing
+                      : rays.has_sheets                      ? Backs::of_bodies_hide
+                                                             : Backs::hide;
   Vec3d sum = {0, 0, 0};
   double seen = 0;
   for (const Patch& patch : light.patches) {
     const double factor = patch_form_factor(at.point, at.normal, patch);
     if (!(factor > 0)) continue;
-    const double share = factor * visible_share(rays, at, patch, factor, seed, through_backs);
+    const double share = factor * visible_share(rays, at, patch, factor, seed, backs).here;
     const std::size_t i = static_cast<std::size_t>(&patch - light.patches.data());
     sum += (patch.material == material ? light.all : light.reflected)[i] * share, seen += share;
   }
@@ -139,7 +142,11 @@ Status solve_radiosity(const FrameData& frame, const RadiosityOptions& options, 
   CHECK(frame.scene != nullptr && frame.accel_info != nullptr && solution != nullptr);
   CHECK_GE(options.threads, 1u);
   const Scene& scene = *frame.scene;
-  const SceneRays rays = {frame};
+  const std::vector<char> bodies = find_bodies(scene);
+  SceneRays rays = {frame};
+  rays.bodies = &bodies;
+  for (std::uint32_t i = 0; i < scene.triangles.count; ++i)
+    rays.has_sheets |= !bodies[i] && !scene.materials[scene.triangles[i].material()].double_sided;
   *solution = RadiositySolution();
   const Surfaces surfaces = find_surfaces(scene, options.patch_count);
   if (!(surfaces.total_area > 0)) return failure("the scene has no surface that could reflect light");
