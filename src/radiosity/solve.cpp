@@ -6,9 +6,9 @@
 
 #include "base/check.h"
 #include "base/fmath.h"
-#include "radiosity/barriers.h"
 #include "radiosity/bodies.h"
 #include "radiosity/corners.h"
+#include "radiosity/grids.h"
 #include "radiosity/refine.h"
 #include "radiosity/tangents.h"
 
@@ -124,7 +124,7 @@ Vec3 largest_value(const RadiositySolution& s) {
 std::size_t RadiositySolution::bytes() const {
   return info.size() * sizeof info[0] + triangles.size() * sizeof triangles[0] + grids.size() * sizeof grids[0] +
          nodes.size() * sizeof nodes[0] + corners.size() * sizeof corners[0] + values.size() * sizeof values[0] +
-         splits.size() * sizeof splits[0];
+         splits.size() * sizeof splits[0] + cuts.size() * sizeof cuts[0];
 }
 
 void RadiositySolution::view(Scene* scene) const {
@@ -134,7 +134,7 @@ void RadiositySolution::view(Scene* scene) const {
   scene->radiosity_info = array(info), scene->radiosity_triangles = array(triangles);
   scene->radiosity_grids = array(grids), scene->radiosity_nodes = array(nodes);
   scene->radiosity_corners = array(corners), scene->radiosity_values = array(values);
-  scene->radiosity_splits = array(splits);
+  scene->radiosity_splits = array(splits), scene->radiosity_cuts = array(cuts);
 }
 
 Status solve_radiosity(const FrameData& frame, const RadiosityOptions& options, const SolverProgress& progress,
@@ -210,14 +210,15 @@ Status solve_radiosity(const FrameData& frame, const RadiosityOptions& options, 
     if (!progress(kFactorsShare + (1 - kFactorsShare) * ++done / count)) stop = true;
   });
   if (stop) return failure("interrupted");
-  keep_behind_barriers(rays, places.nodes, known, solution);
   for (const RadiosityGrid& grid : solution->grids) {
     RadiosityNode* nodes = &solution->nodes[grid.node_begin];
     const auto begin = known.begin() + grid.node_begin;
     std::vector<char> of_grid(begin, begin + grid.columns * grid.rows);
     fill_covered(grid, &of_grid, nodes);
-    set_tangents(nodes, grid.columns, grid.rows, true);
   }
+  join_seams(places.seams, solution);
+  for (const RadiosityGrid& grid : solution->grids)
+    set_tangents(&solution->nodes[grid.node_begin], grid.columns, grid.rows, true);
   fill_covered_values(scene, &known_values, solution);
   solution->info.push_back({largest_value(*solution)});
   return success();
