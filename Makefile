@@ -211,7 +211,7 @@ ROOMS ?= 50
 ROOM_FILES ?= $(wildcard ../shared/scenes/cornell/mcguire/*.obj ../shared/scenes/cornell/embree/*.obj ../shared/scenes/cornell/*.glb)
 rooms: setup-tests configure
 	cmake --build $(BUILD) -j$(JOBS) --target measure_rooms
-	$(BUILD)/measure_rooms --directions 256 --lights --gaps --random $(ROOMS) $(ROOM_FILES)
+	$(BUILD)/measure_rooms --rounds 8 --lights --gaps --random $(ROOMS) $(ROOM_FILES)
 
 # Mach bands of radiosity by each reconstruction: a table, and the cube as [Bastos92] figs. 6 and 7 show it.
 mach-bands: setup-tests configure

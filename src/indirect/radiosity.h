@@ -29,6 +29,15 @@ inline Vec3 radiosity_of_grid(const Scene& scene, const RadiosityGrid& grid, con
   return how == Reconstruction::constant ? constant_patch(corners) : smooth_cell(corners, s, t, how);
 }
 
+// The grid around a point of a flat part, whose side of a triangle refers to `place`.
+inline const RadiosityGrid& grid_around(const Scene& scene, std::uint32_t place, const Vec3& point) {
+  while (is_cut(place)) {
+    const RadiosityCut& cut = scene.radiosity_cuts[place & ~kRadiosityCutBits];
+    place = cut.part[dot(point - cut.origin, cut.across) > 0];
+  }
+  return scene.radiosity_grids[place & ~kRadiosityGridBit];
+}
+
 // The corners of the part of a triangle around a point, whose barycentric weights become those in the part.
 inline const RadiosityCorners& corners_around(const Scene& scene, std::uint32_t place, float* weight) {
   if (!is_split(place)) return scene.radiosity_corners[place];
@@ -73,7 +82,7 @@ struct RadiosityIndirect {
     if (place & kRadiosityGridBit) {
       const Vec3 point =
           scene.positions[t.vertex(0)] * w + scene.positions[t.vertex(1)] * at.u + scene.positions[t.vertex(2)] * at.v;
-      const RadiosityGrid& grid = scene.radiosity_grids[place & ~kRadiosityGridBit];
+      const RadiosityGrid& grid = grid_around(scene, place, point);
       const Vec3 value = radiosity_of_grid(scene, grid, point, at.reconstruction);
       // Rounding may leave the range of the limited patches.
       return albedo * min(max(value, Vec3{0, 0, 0}), scene.radiosity_info[0].value_max);

@@ -1,13 +1,18 @@
-// Surfaces that stand on others, such as partitions, and the light on either side of them.
+// Lines of flat surfaces across which their light changes at once: the feet of partitions that stand on them, and the
+// outlines of sheets close above them, such as a lamp below a ceiling.
 #pragma once
-#include "radiosity/receivers.h"
+#include "radiosity/cuts.h"
 
 namespace pocketray {
 
-// Values are interpolated between the nodes of a grid, also across what stands between them. Where a node has much more
-// light than a neighbour that it does not see, it takes that one's: what is lost is less than what would shine through
-// the other side. `known`: nodes that do not lie inside bodies.
-void keep_behind_barriers(const SceneRays& rays, const std::vector<NodePlace>& places, const std::vector<char>& known,
-                          RadiositySolution* solution);
+struct Barrier {
+  Vec3d a, b;    // in the surface's plane
+  Vec3d inward;  // in that plane, unit, across the barrier: where the sheet lies
+  double gap;    // its largest distance from the plane
+};
+
+// Finds those of a surface's front or back. Sheets whose backs let views through are none, seen from behind.
+std::vector<Barrier> find_barriers(const Scene& scene, const Surfaces& surfaces, const FlatSurface& flat,
+                                   const std::vector<CutEdge>& edges, bool back);
 
 }  // namespace pocketray

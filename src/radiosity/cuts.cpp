@@ -13,7 +13,6 @@ constexpr double kPartMin = 1e-4;   // of a cell's area
 constexpr double kShared = 1e-3;    // of a part's size: a shorter way through it does not count
 constexpr std::size_t kParts = 16;  // of one cell
 constexpr double kBend = 1 - 1e-5;  // cosine between normals, as in surfaces.cpp
-constexpr double kInPlane = 1e-3;   // of a patch's side
 constexpr double kLongEdge = 0.5;   // of a patch's side
 constexpr std::size_t kEdges = 1 << 16;
 
@@ -101,7 +100,8 @@ std::vector<CutEdge> find_cut_edges(const Scene& scene, const Surfaces& surfaces
   };
   for (const auto& entry : found)
     if ((entry.second.count == 1 || entry.second.bends) && edges.size() < kEdges)
-      edges.push_back({vector(entry.first.first), vector(entry.first.second), entry.second.count == 1});
+      edges.push_back(
+          {vector(entry.first.first), vector(entry.first.second), entry.second.count == 1, entry.second.first, 0});
   return edges;
 }
 
@@ -116,24 +116,11 @@ std::vector<CutEdge> edges_close_to(const FlatSurface& flat, const std::vector<C
       const Vec3d p = own == limit ? from : from + (to - from) * ((own - limit) / (own - other));
       return p - flat.normal * dot(p - flat.origin, flat.normal);
     };
-    const CutEdge close = {at_height(a, edge.a, b, edge.b), at_height(b, edge.b, a, edge.a), edge.is_end};
+    const CutEdge close = {at_height(a, edge.a, b, edge.b), at_height(b, edge.b, a, edge.a), edge.is_end, edge.triangle,
+                           std::min(reach, std::max(std::fabs(a), std::fabs(b)))};
     if (length(close.b - close.a) > kShared * patch_side) result.push_back(close);
   }
   return result;
-}
-
-bool is_barrier(const FlatSurface& flat, const CutEdge& edge, double patch_side) {
-  if (!edge.is_end) return false;
-  double low[2] = {1e300, 1e300}, high[2] = {-1e300, -1e300};
-  const double size[2] = {flat.width, flat.height}, margin = kInPlane * patch_side;
-  for (const Vec3d& p : {edge.a, edge.b}) {
-    if (std::fabs(dot(p - flat.origin, flat.normal)) > margin) return false;
-    const double at[2] = {dot(p - flat.origin, flat.s), dot(p - flat.origin, flat.t)};
-    for (int k = 0; k < 2; ++k) low[k] = std::min(low[k], at[k]), high[k] = std::max(high[k], at[k]);
-  }
-  for (int k = 0; k < 2; ++k)  // inside, not along its border
-    if (high[k] < margin || low[k] > size[k] - margin) return false;
-  return true;
 }
 
 std::vector<std::vector<Piece>> cut_cell(const FlatSurface& flat, const std::vector<CutEdge>& edges,

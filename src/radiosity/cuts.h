@@ -17,7 +17,9 @@ Polygon clip(const Polygon& polygon, const Vec3d& origin, const Vec3d& axis, dou
 
 struct CutEdge {
   Vec3d a, b;
-  bool is_end;  // of an open surface
+  bool is_end;             // of an open surface
+  std::uint32_t triangle;  // that it bounds
+  double gap;              // its largest distance from a plane onto which it was projected
 };
 
 // Outlines of flat parts: edges at which surfaces end or bend, as far as they are as long as half a patch or bound
@@ -26,9 +28,6 @@ std::vector<CutEdge> find_cut_edges(const Scene& scene, const Surfaces& surfaces
 
 // The parts of edges within a quarter of a patch of a flat surface's plane, projected onto it.
 std::vector<CutEdge> edges_close_to(const FlatSurface& flat, const std::vector<CutEdge>& edges, double patch_side);
-
-// Whether an open surface stands on a flat one, such as a partition, whose end lies in its plane.
-bool is_barrier(const FlatSurface& flat, const CutEdge& edge, double patch_side);
 
 // Divides a cell along the edges that run through it.
 std::vector<std::vector<Piece>> cut_cell(const FlatSurface& flat, const std::vector<CutEdge>& edges,

@@ -18,17 +18,20 @@ constexpr double kDoubt = 1.5;  // standard errors of a share of random rays; th
 
 Vec3 origin_of(const Receiver& from) { return to_float(from.point + from.normal * from.lift); }
 
-// A ray that looks through the backs of one-sided surfaces, as a viewer does.
+// A ray that looks through backs of one-sided surfaces, as a viewer does who looks along `direction`.
 struct Look {
   const SceneRays* rays;
   Vec3 direction;
+  Backs backs;
 };
 bool is_seen(const void* context, std::uint32_t triangle, float u, float v) {
   const Look& look = *static_cast<const Look*>(context);
   const FrameData& frame = look.rays->frame;
   const Triangle& t = frame.scene->triangles[triangle];
   const Material& m = frame.scene->materials[t.material()];
-  if (!m.double_sided) {
+  const std::vector<char>* bodies = look.rays->bodies;
+  const bool is_body = bodies == nullptr || (*bodies)[triangle];
+  if (!m.double_sided && (look.backs == Backs::hide_nothing || !is_body)) {
     const Vec3& a = frame.positions[t.vertex(0)];
     const Vec3 outward = cross(frame.positions[t.vertex(1)] - a, frame.positions[t.vertex(2)] - a);
     if (is_culled(m, dot(outward, look.direction) <= 0)) return false;
@@ -37,20 +40,25 @@ bool is_seen(const void* context, std::uint32_t triangle, float u, float v) {
   return !filter || filter->accept(filter->context, triangle, u, v);
 }
 
+// Whether a viewer who looks along a direction, that of the ray or the opposite one, sees from one end to the other.
+bool is_clear(const SceneRays& rays, const Ray& ray, const Vec3& direction, Backs backs) {
+  const Look look = {&rays, direction, backs};
+  const HitFilter seen = {is_seen, &look, rays.frame.filters_read_point};
+  TraceStats stats;
+  return !rays.frame.accel_info->occluded(rays.frame.accel, ray, backs == Backs::hide ? rays.filter() : &seen, &stats);
+}
+
 }  // namespace
 
-bool is_visible(const SceneRays& rays, const Receiver& from, const Vec3d& to, bool through_backs) {
-  const Vec3 origin = origin_of(from);
-  TraceStats stats;
-  const Ray ray = {origin, to_float(to) - origin, 1};
-  const Look look = {&rays, ray.direction};
-  const HitFilter seen = {is_seen, &look, rays.frame.filters_read_point};
-  return !rays.frame.accel_info->occluded(rays.frame.accel, ray, through_backs ? &seen : rays.filter(), &stats);
+bool is_visible(const SceneRays& rays, const Receiver& from, const Vec3d& to, Backs backs) {
+  const Vec3 origin = origin_of(from), way = to_float(to) - origin;
+  return is_clear(rays, {origin, way, 1}, way, backs);
 }
 
 Outlook look_around(const SceneRays& rays, const Receiver& from, std::uint32_t count, std::uint32_t seed) {
   const std::uint32_t side = static_cast<std::uint32_t>(std::sqrt(static_cast<double>(count)) + 0.5);
   CHECK_EQ(side * side, count);
+  CHECK(rays.bodies == nullptr || rays.bodies->size() == rays.frame.scene->triangles.count);
   Rng rng = make_rng(seed);
   Vec3 tangent, bitangent;
   const Vec3 normal = to_float(from.normal), origin = origin_of(from);
@@ -65,8 +73,10 @@ Outlook look_around(const SceneRays& rays, const Receiver& from, std::uint32_t c
                            normal * static_cast<float>(std::sqrt(1 - square));
     TraceStats stats;
     Hit hit;
-    rays.frame.accel_info->closest(rays.frame.accel, {origin, direction, __builtin_inff()}, rays.filter(), &hit,
-                                   &stats);
+    const Look look = {&rays, direction, Backs::of_bodies_hide};
+    const HitFilter seen = {is_seen, &look, rays.frame.filters_read_point};
+    rays.frame.accel_info->closest(rays.frame.accel, {origin, direction, __builtin_inff()},
+                                   rays.has_sheets ? &seen : rays.filter(), &hit, &stats);
     if (hit.triangle == kNoTriangle) {
       outlook.open += 1.0 / count;
       continue;
@@ -87,18 +97,22 @@ double credible_sum(double sum, double closed, std::uint32_t count) {
   return std::min(std::max(sum, closed - error), closed + error);
 }
 
-double visible_share(const SceneRays& rays, const Receiver& from, const Patch& patch, double factor, std::uint32_t seed,
-                     bool through_backs) {
+VisibleShare visible_share(const SceneRays& rays, const Receiver& from, const Patch& patch, double factor,
+                           std::uint32_t seed, Backs backs) {
   CHECK(factor > 0);
   const bool all = factor > 0.01;
-  int seen = 0, tried = 0;
+  const Vec3 origin = origin_of(from);
+  int here = 0, there = 0, tried = 0;
   for (int i = 0; i < (all ? kPatchSamples : 1); ++i) {
     const PatchSample& sample = patch.samples[all ? i : static_cast<int>(seed % kPatchSamples)];
     const Vec3d to = sample.point + sample.normal * patch.lift;
     ++tried;
-    seen += is_visible(rays, from, to, through_backs);
+    const Vec3 way = to_float(to) - origin;
+    const bool seen = is_clear(rays, {origin, way, 1}, way, Backs::hide), through = !seen && backs != Backs::hide;
+    here += seen || (through && is_clear(rays, {origin, way, 1}, way, backs));
+    there += seen || (through && is_clear(rays, {origin, way, 1}, -way, backs));
   }
-  return static_cast<double>(seen) / tried;
+  return {static_cast<double>(here) / tried, static_cast<double>(there) / tried};
 }
 
 Vec3d light_irradiance(const SceneRays& rays, const Receiver& at) {

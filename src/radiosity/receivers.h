@@ -15,9 +15,17 @@ struct ValuePlace {
   std::uint32_t material;
 };
 
+// A node beside a cut where nothing stands, and a point beyond it whose light is to be the same.
+struct Seam {
+  std::uint32_t node;
+  std::uint32_t place;  // as in RadiositySolution::triangles
+  Vec3d beyond;
+};
+
 struct Places {
   std::vector<NodePlace> nodes;
   std::vector<ValuePlace> values;
+  std::vector<Seam> seams;
 };
 
 // Fills the solution's triangles, grids and corners, makes its nodes and values, and lists where they lie. Nodes at or

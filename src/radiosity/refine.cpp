@@ -20,7 +20,8 @@ Vec3d lamp_irradiance(const SceneRays& rays, const std::vector<const Patch*>& la
   Vec3d sum = {0, 0, 0};
   for (const Patch* lamp : lamps) {
     const double factor = patch_form_factor(at.point, at.normal, *lamp);
-    if (factor > 0) sum += lamp->emission * (kPi * factor * visible_share(rays, at, *lamp, factor, 0));
+    if (factor > 0)
+      sum += lamp->emission * (kPi * factor * visible_share(rays, at, *lamp, factor, 0, Backs::hide).here);
   }
   return sum;
 }

@@ -6,8 +6,9 @@
 
 #include "base/check.h"
 #include "base/fmath.h"
-#include "radiosity/barriers.h"
+#include "radiosity/bodies.h"
 #include "radiosity/corners.h"
+#include "radiosity/grids.h"
 #include "radiosity/refine.h"
 #include "radiosity/tangents.h"
 
@@ -69,13 +70,15 @@ Vec3d gather(const SceneRays& rays, const PatchLight& light, const Receiver& at,
              std::uint32_t seed) {
   const Outlook outlook = look_around(rays, at, kNodeRays, seed);
   if (outlook.back > kCovered) return {-1, 0, 0};
-  const bool through_backs = on_grid && outlook.back < kBesideBacks;
+  const Backs backs = on_grid && outlook.back < kBesideBacks ? Backs::hide_nothing
+                      : rays.has_sheets                      ? Backs::of_bodies_hide
+                                                             : Backs::hide;
   Vec3d sum = {0, 0, 0};
   double seen = 0;
   for (const Patch& patch : light.patches) {
     const double factor = patch_form_factor(at.point, at.normal, patch);
     if (!(factor > 0)) continue;
-    const double share = factor * visible_share(rays, at, patch, factor, seed, through_backs);
+    const double share = factor * visible_share(rays, at, patch, factor, seed, backs).here;
     const std::size_t i = static_cast<std::size_t>(&patch - light.patches.data());
     sum += (patch.material == material ? light.all : light.reflected)[i] * share, seen += share;
   }
@@ -121,7 +124,7 @@ Vec3 largest_value(const RadiositySolution& s) {
 std::size_t RadiositySolution::bytes() const {
   return info.size() * sizeof info[0] + triangles.size() * sizeof triangles[0] + grids.size() * sizeof grids[0] +
          nodes.size() * sizeof nodes[0] + corners.size() * sizeof corners[0] + values.size() * sizeof values[0] +
-         splits.size() * sizeof splits[0];
+         splits.size() * sizeof splits[0] + cuts.size() * sizeof cuts[0];
 }
 
 void RadiositySolution::view(Scene* scene) const {
@@ -131,7 +134,7 @@ void RadiositySolution::view(Scene* scene) const {
   scene->radiosity_info = array(info), scene->radiosity_triangles = array(triangles);
   scene->radiosity_grids = array(grids), scene->radiosity_nodes = array(nodes);
   scene->radiosity_corners = array(corners), scene->radiosity_values = array(values);
-  scene->radiosity_splits = array(splits);
+  scene->radiosity_splits = array(splits), scene->radiosity_cuts = array(cuts);
 }
 
 Status solve_radiosity(const FrameData& frame, const RadiosityOptions& options, const SolverProgress& progress,
@@ -139,7 +142,11 @@ Status solve_radiosity(const FrameData& frame, const RadiosityOptions& options, 
   CHECK(frame.scene != nullptr && frame.accel_info != nullptr && solution != nullptr);
   CHECK_GE(options.threads, 1u);
   const Scene& scene = *frame.scene;
-  const SceneRays rays = {frame};
+  const std::vector<char> bodies = find_bodies(scene);
+  SceneRays rays = {frame};
+  rays.bodies = &bodies;
+  for (std::uint32_t i = 0; i < scene.triangles.count; ++i)
+    rays.has_sheets |= !bodies[i] && !scene.materials[scene.triangles[i].material()].double_sided;
   *solution = RadiositySolution();
   const Surfaces surfaces = find_surfaces(scene, options.patch_count);
   if (!(surfaces.total_area > 0)) return failure("the scene has no surface that could reflect light");
@@ -203,14 +210,15 @@ Status solve_radiosity(const FrameData& frame, const RadiosityOptions& options, 
     if (!progress(kFactorsShare + (1 - kFactorsShare) * ++done / count)) stop = true;
   });
   if (stop) return failure("interrupted");
-  keep_behind_barriers(rays, places.nodes, known, solution);
   for (const RadiosityGrid& grid : solution->grids) {
     RadiosityNode* nodes = &solution->nodes[grid.node_begin];
     const auto begin = known.begin() + grid.node_begin;
     std::vector<char> of_grid(begin, begin + grid.columns * grid.rows);
     fill_covered(grid, &of_grid, nodes);
-    set_tangents(nodes, grid.columns, grid.rows, true);
   }
+  join_seams(places.seams, solution);
+  for (const RadiosityGrid& grid : solution->grids)
+    set_tangents(&solution->nodes[grid.node_begin], grid.columns, grid.rows, true);
   fill_covered_values(scene, &known_values, solution);
   solution->info.push_back({largest_value(*solution)});
   return success();

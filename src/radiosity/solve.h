@@ -27,6 +27,7 @@ struct RadiositySolution {
   std::vector<RadiosityCorners> corners;
   std::vector<Vec3> values;
   std::vector<RadiositySplit> splits;
+  std::vector<RadiosityCut> cuts;
   std::uint32_t patch_count = 0, shots = 0;
   double unshot = 0;  // share of the emitted light
   std::size_t bytes() const;

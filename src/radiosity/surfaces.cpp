@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numeric>
 #include <tuple>
 
 #include "base/check.h"
@@ -14,16 +13,6 @@ namespace {
 constexpr double kFlat = 1 - 1e-5;   // cosine between normals of one plane: a quarter of a degree
 constexpr double kOffPlane = 1e-3;   // of the distance, relative to the part's size
 constexpr double kPatchesMin = 1.5;  // along the longer side
-
-struct Forest {
-  std::vector<std::uint32_t> parent;
-  explicit Forest(std::size_t count) : parent(count) { std::iota(parent.begin(), parent.end(), 0u); }
-  std::uint32_t find(std::uint32_t i) {
-    while (parent[i] != i) i = parent[i] = parent[parent[i]];
-    return i;
-  }
-  void join(std::uint32_t a, std::uint32_t b) { parent[find(b)] = find(a); }
-};
 
 // A flat triangle shaded as such: its vertex normals, if any, are its own.
 bool is_shaded_flat(const Scene& scene, std::uint32_t triangle, const Vec3d& normal) {

@@ -1,11 +1,23 @@
 // Flat parts of a scene, merged from triangles, each with the rectangle that its grid of nodes covers.
 #pragma once
+#include <numeric>
 #include <vector>
 
 #include "radiosity/form_factor.h"
 #include "scene/scene.h"
 
 namespace pocketray {
+
+// Disjoint sets of triangles.
+struct Forest {
+  std::vector<std::uint32_t> parent;
+  explicit Forest(std::size_t count) : parent(count) { std::iota(parent.begin(), parent.end(), 0u); }
+  std::uint32_t find(std::uint32_t i) {
+    while (parent[i] != i) i = parent[i] = parent[parent[i]];
+    return i;
+  }
+  void join(std::uint32_t a, std::uint32_t b) { parent[find(b)] = find(a); }
+};
 
 // Plane coordinates: x = (p − origin)·s, y = (p − origin)·t; s and t are unit.
 struct FlatSurface {

@@ -25,15 +25,22 @@ Vec3d ambient_estimate(const Exchange& e) {
 
 // Averages Aᵢ·Fᵢⱼ with Aⱼ·Fⱼᵢ, each found from points of its first patch, so that the smaller one's is the better; then
 // a few rounds of scaling rows to their sums.
-void make_consistent(const std::vector<Patch>& patches, const std::vector<double>& closed, FormFactors* f) {
+// `there`: Fⱼᵢ·Aⱼ/Aᵢ as found from i, at the place of Fᵢⱼ; empty if it is no other.
+void make_consistent(const std::vector<Patch>& patches, const std::vector<double>& closed,
+                     const std::vector<float>& there, FormFactors* f) {
   const std::uint32_t n = f->count;
+  CHECK(there.empty() || there.size() == f->rows.size());
+  const std::vector<float>& opposite = there.empty() ? f->rows : there;
   std::vector<double> scale(n);
   for (std::uint32_t i = 0; i < n; ++i)
     for (std::uint32_t j = 0; j < i; ++j) {
-      float &ij = f->rows[std::size_t(i) * n + j], &ji = f->rows[std::size_t(j) * n + i];
+      const std::size_t ij = std::size_t(i) * n + j, ji = std::size_t(j) * n + i;
       const double a = patches[i].area, b = patches[j].area, own = b * b / (a * a + b * b);
-      const double flow = own * static_cast<double>(ij) * a + (1 - own) * static_cast<double>(ji) * b;
-      ij = ji = static_cast<float>(flow);
+      const double to_i =
+                       own * static_cast<double>(f->rows[ij]) * a + (1 - own) * static_cast<double>(opposite[ji]) * b,
+                   to_j =
+                       own * static_cast<double>(opposite[ij]) * a + (1 - own) * static_cast<double>(f->rows[ji]) * b;
+      f->rows[ij] = static_cast<float>(to_i), f->rows[ji] = static_cast<float>(to_j);
     }
   std::vector<double> wanted(n);
   for (int round = 0; round < 24; ++round) {
@@ -59,6 +66,9 @@ FormFactors find_form_factors(const SceneRays& rays, const std::vector<Patch>& p
   FormFactors f;
   f.count = static_cast<std::uint32_t>(patches.size());
   f.rows.assign(std::size_t(f.count) * f.count, 0);
+  std::vector<float> there(rays.has_sheets ? f.rows.size() : 0);
+  f.is_reciprocal = there.empty();
+  const Backs backs = rays.has_sheets ? Backs::of_bodies_hide : Backs::hide;
   std::atomic<std::uint32_t> done{0};
   std::atomic<bool> stop{false};
   parallel_for(f.count, threads, [&](std::uint32_t i) {
@@ -68,7 +78,7 @@ FormFactors find_form_factors(const SceneRays& rays, const std::vector<Patch>& p
       const Vec3d way = patches[j].centre - patches[i].centre;
       const double near = 3 * (patches[i].radius + patches[j].radius);
       const bool is_near = dot(way, way) < near * near, is_close = dot(way, way) < kClose * kClose * near * near;
-      double sum = 0;
+      double sum = 0, sum_there = 0;
       int samples = 0;
       const int count = is_close ? static_cast<int>(patches[i].light_samples.size()) : kPatchSamples;
       for (int k = 0; k < count; k += is_near ? 1 : 2) {
@@ -77,15 +87,18 @@ FormFactors find_form_factors(const SceneRays& rays, const std::vector<Patch>& p
         const Receiver from = {at.point, at.normal, patches[i].lift};
         const double factor = patch_form_factor(at.point, at.normal, patches[j]);
         ++samples;
-        if (factor > 0)
-          sum += factor * visible_share(rays, from, patches[j], factor, i + j + static_cast<std::uint32_t>(k));
+        if (!(factor > 0)) continue;
+        const VisibleShare share =
+            visible_share(rays, from, patches[j], factor, i + j + static_cast<std::uint32_t>(k), backs);
+        sum += factor * share.here, sum_there += factor * share.there;
       }
       f.rows[std::size_t(i) * f.count + j] = static_cast<float>(sum / samples);
+      if (!there.empty()) there[std::size_t(i) * f.count + j] = static_cast<float>(sum_there / samples);
     }
     if (!progress(static_cast<double>(++done) / f.count)) stop = true;
   });
   if (stop) return {};
-  make_consistent(patches, closed, &f);
+  make_consistent(patches, closed, there, &f);
   return f;
 }
 
@@ -127,9 +140,11 @@ void shoot(const FormFactors& factors, bool overshoot, Exchange* e) {
   e->unshot[brightest] = -early;
   double arrived = 0;
   for (std::uint32_t j = 0; j < factors.count; ++j) {
-    const double share = static_cast<double>(factors.at(brightest, j));
+    const double share = factors.is_reciprocal
+                             ? static_cast<double>(factors.at(brightest, j))
+                             : static_cast<double>(factors.at(j, brightest)) * e->area[j] / e->area[brightest];
     if (!(share > 0)) continue;
-    const Vec3d received = sent * (share * e->area[brightest] / e->area[j]);  // Fⱼᵢ by reciprocity
+    const Vec3d received = sent * (share * e->area[brightest] / e->area[j]);  // what j sees of it
     const Vec3d reflected = e->albedo[j] * received;
     e->radiance[j] += reflected, e->unshot[j] += reflected;
     e->absorbed += sum_of(received - reflected) * e->area[j];

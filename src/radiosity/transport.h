@@ -6,17 +6,19 @@
 
 namespace pocketray {
 
-// Fᵢⱼ: the share of the light leaving patch i that arrives at j.
+// Fᵢⱼ: the share of what patch i sees that is patch j. As light passes sheets from behind, for those who look at them
+// so, AᵢFᵢⱼ is not AⱼFⱼᵢ across sheets.
 struct FormFactors {
   std::uint32_t count = 0;
   std::vector<float> rows;  // count × count
+  bool is_reciprocal = true;
   float at(std::uint32_t i, std::uint32_t j) const { return rows[std::size_t(i) * count + j]; }
 };
 
 using SolverProgress = std::function<bool(double share)>;  // false: stop
 
-// Analytic factors times the visible share by rays; made reciprocal, and each row summing to the share of `closed[i]`
-// of the hemisphere that surfaces fill. Empty if stopped.
+// Analytic factors times the visible share by rays; made reciprocal but for sheets, and each row summing to the share
+// of `closed[i]` of the hemisphere that surfaces fill. Empty if stopped.
 FormFactors find_form_factors(const SceneRays& rays, const std::vector<Patch>& patches,
                               const std::vector<double>& closed, std::uint32_t threads, const SolverProgress& progress);
 

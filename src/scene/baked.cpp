@@ -28,7 +28,8 @@ static_assert(sizeof(RadiosityInfo) == 12 && sizeof(RadiosityGrid) == 3 * 12 + 3
 static_assert(sizeof(AnimationLabel) == 64 + 188 + 4 && sizeof(SceneOrigin) == 3 * 8, "no padding");
 static_assert(sizeof(DefaultView) == 2 * 4 + 12 + 4, "no padding");
 static_assert(sizeof(EnvironmentInfo) == 3 * 4 + 10 * 12, "no padding");
-static_assert(sizeof(RadiosityNode) == 4 * 12 && sizeof(RadiosityCorners) == 12 && sizeof(RadiositySplit) == 8,
+static_assert(sizeof(RadiosityNode) == 4 * 12 && sizeof(RadiosityCorners) == 12 && sizeof(RadiositySplit) == 8 &&
+                  sizeof(RadiosityCut) == 2 * 12 + 2 * 4,
               "no padding");
 
 constexpr std::uint64_t kSectionAlignment = 64;
@@ -99,8 +100,9 @@ void for_each_array(SceneType& scene, Visit visit) {
   visit("animation_labels", scene.animation_labels);
   visit("node_visible", scene.node_visible);
   visit("origin", scene.origin);
+  visit("radiosity_cuts", scene.radiosity_cuts);
 }
-constexpr std::uint32_t kArrayCount = 43;
+constexpr std::uint32_t kArrayCount = 44;
 constexpr std::uint32_t kSectionCount = 1 + kArrayCount;  // kind 0 is SceneInfo
 
 constexpr std::uint64_t aligned(std::uint64_t offset) {
@@ -117,6 +119,7 @@ constexpr std::uint32_t section_count_of(std::uint32_t version) {
          : version < 11 ? 38
          : version < 12 ? 40
          : version < 13 ? 41
+         : version < 14 ? 44
                         : kSectionCount;
 }
 

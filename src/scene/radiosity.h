@@ -30,8 +30,8 @@ struct RadiosityCorners {
   std::uint32_t value[3];
 };
 
-// What a side of a triangle refers to: nothing (kNone), a grid, corners, the values with its vertices' indices, or a
-// split.
+// What a side of a triangle refers to: nothing (kNone), a grid, corners, the values with its vertices' indices, a
+// split, or a cut.
 constexpr std::uint32_t kRadiosityAtVertices = 0x7FFFFFFFu;
 constexpr std::uint32_t kRadiosityGridBit = 0x80000000u;
 
@@ -45,6 +45,17 @@ struct RadiositySplit {
 constexpr std::uint32_t kRadiositySplitBit = 0x40000000u;
 constexpr int kRadiosityTurnShift = 28, kRadiosityLevelShift = 23;
 constexpr std::uint32_t kRadiosityPartMax = (1u << kRadiosityLevelShift) - 1, kRadiosityLevelMax = 31;
+
+// Divides a flat part along a line at which its light changes at once, such as the foot of a partition. Points p with
+// (p − origin)·across > 0 have part[1]. A reference to it has kRadiosityCutBits; parts are grids or cuts of higher
+// indices.
+struct RadiosityCut {
+  Vec3 origin, across;
+  std::uint32_t part[2];
+};
+constexpr std::uint32_t kRadiosityCutBits = kRadiosityGridBit | kRadiositySplitBit;
+
+inline bool is_cut(std::uint32_t place) { return place >= kRadiosityCutBits && place != 0xFFFFFFFFu; }
 
 inline bool is_split(std::uint32_t place) {
   return (place & (kRadiosityGridBit | kRadiositySplitBit)) == kRadiositySplitBit && place != kRadiosityAtVertices;

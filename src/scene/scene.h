@@ -305,6 +305,7 @@ struct Scene {
   Array<const RadiosityCorners> radiosity_corners;
   Array<const Vec3> radiosity_values;
   Array<const RadiositySplit> radiosity_splits;
+  Array<const RadiosityCut> radiosity_cuts;
   Array<const std::uint8_t> accel;                // baked accelerator in the layout of accel/; may be empty
   Array<const MaterialMaps> material_maps;        // one per material, or empty
   Array<const EnvironmentInfo> environment_info;  // one, or none

@@ -1,4 +1,5 @@
 // A stored radiosity solution.
+#include "base/check.h"
 #include "scene/baked.h"
 #include "scene/validate_checks.h"
 
@@ -22,6 +23,22 @@ Status validate_grid(const Scene& scene, std::uint32_t index) {
                    grid.rows, kRadiositySideMax);
   if (!is_range(grid.node_begin, std::uint64_t(grid.columns) * grid.rows, scene.radiosity_nodes.count))
     return failure("radiosity_grids[%u] extends beyond the scene's %u nodes", index, scene.radiosity_nodes.count);
+  return success();
+}
+
+// Descents end because indices rise.
+Status validate_cut(const Scene& scene, std::uint32_t index) {
+  CHECK_LT(index, scene.radiosity_cuts.count);
+  const RadiosityCut& cut = scene.radiosity_cuts[index];
+  if (!is_coordinate(cut.origin) || !is_coordinate(cut.across))
+    return failure("radiosity_cuts[%u] is not finite or too large", index);
+  for (std::uint32_t part : cut.part) {
+    const bool divided = is_cut(part);
+    const std::uint32_t at = part & (divided ? ~kRadiosityCutBits : ~kRadiosityGridBit),
+                        limit = divided ? scene.radiosity_cuts.count : scene.radiosity_grids.count;
+    if (!(part & kRadiosityGridBit) || at >= limit || (divided && at <= index))
+      return failure("radiosity_cuts[%u] has part %#x of %u %s", index, part, limit, divided ? "cuts" : "grids");
+  }
   return success();
 }
 
@@ -61,6 +78,7 @@ Status validate_radiosity(const Scene& scene) {
     return failure("%u radiosity_info, not %u", scene.radiosity_info.count, count ? 1u : 0u);
   if (count) RETURN_IF_ERROR(check_light("radiosity_info", 0, scene.radiosity_info[0].value_max, 0, kRadianceMax));
   for (std::uint32_t i = 0; i < scene.radiosity_grids.count; ++i) RETURN_IF_ERROR(validate_grid(scene, i));
+  for (std::uint32_t i = 0; i < scene.radiosity_cuts.count; ++i) RETURN_IF_ERROR(validate_cut(scene, i));
   RETURN_IF_ERROR(validate_nodes_of_grids(scene));
   for (std::uint32_t i = 0; i < scene.radiosity_values.count; ++i)
     RETURN_IF_ERROR(check_light("radiosity_values", i, scene.radiosity_values[i], 0, kRadianceMax));
@@ -80,6 +98,11 @@ Status validate_radiosity(const Scene& scene) {
       const bool has_level = place >> kRadiosityLevelShift & kRadiosityLevelMax;
       if ((place & kRadiosityPartMax) < scene.radiosity_splits.count && turn_of(place) <= 2 && !has_level) continue;
       return failure("radiosity_triangles[%u] refers to split %#x of %u", i, place, scene.radiosity_splits.count);
+    }
+    if (is_cut(place)) {
+      if ((place & ~kRadiosityCutBits) < scene.radiosity_cuts.count) continue;
+      return failure("radiosity_triangles[%u] refers to cut %u of %u", i, place & ~kRadiosityCutBits,
+                     scene.radiosity_cuts.count);
     }
     const bool on_grid = place & kRadiosityGridBit;
     const std::uint32_t index = place & ~kRadiosityGridBit,

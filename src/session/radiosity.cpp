@@ -23,6 +23,7 @@ template <class Visit>
 void visit_radiosity(Scene* s, const Visit& visit) {
   visit(s->radiosity_info), visit(s->radiosity_triangles), visit(s->radiosity_grids);
   visit(s->radiosity_nodes), visit(s->radiosity_corners), visit(s->radiosity_values), visit(s->radiosity_splits);
+  visit(s->radiosity_cuts);
 }
 
 }  // namespace

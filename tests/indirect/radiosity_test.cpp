@@ -56,6 +56,28 @@ TEST_CASE("radiosity_is_looked_up_by_triangle_side_and_place") {
   CHECK(fronts.at(0, .25f, .5f, false, R::bilinear) == 0);
 }
 
+// Goal: a hit on a flat part that is cut apart finds the grid on its side of each line. Method: two cuts, three grids
+// of one value each, points on either side of the lines.
+TEST_CASE("radiosity_of_cut_grids_is_that_of_their_side") {
+  Stored s;
+  RadiosityGrid grids[3] = {s.grid, s.grid, s.grid};
+  RadiosityNode nodes[12] = {};
+  for (int i = 0; i < 12; ++i) nodes[i].value = Vec3{1, 1, 1} * static_cast<float>(1 + i / 4);
+  for (std::uint32_t i = 0; i < 3; ++i) grids[i].node_begin = 4 * i;
+  const RadiosityCut cuts[2] = {{{.5f, 0, 0}, {1, 0, 0}, {kRadiosityGridBit, kRadiosityCutBits | 1}},
+                                {{0, .25f, 0}, {0, 1, 0}, {kRadiosityGridBit | 1, kRadiosityGridBit | 2}}};
+  s.places[0] = kRadiosityCutBits;
+  s.scene.radiosity_grids = {grids, 3}, s.scene.radiosity_nodes = {nodes, 12}, s.scene.radiosity_cuts = {cuts, 2};
+  // The place in the square is (u + v, v).
+  for (Reconstruction how : {Reconstruction::constant, Reconstruction::bilinear, Reconstruction::bicubic}) {
+    CHECK(s.at(0, .3f, .1f, true, how) == .5f);
+    CHECK(s.at(0, .45f, .04f, true, how) == .5f);
+    CHECK(s.at(0, .5f, .01f, true, how) == 1);
+    CHECK(s.at(0, .5f, .24f, true, how) == 1);
+    CHECK(s.at(0, .5f, .26f, true, how) == 1.5f);
+  }
+}
+
 // Goal: a hit on a divided triangle finds the part around it. Method: ABC halved on BC, and the half with B on its edge
 // to A; values that are linear in each part, against barycentric weights by areas.
 TEST_CASE("radiosity_of_divided_triangles_is_that_of_the_part") {

@@ -1,6 +1,8 @@
-// measure_rooms [--random N] [--gaps] [--directions N] [--patches N] [--lights] [FILE...]: the table of `make rooms`.
-// Indirect light of rooms against full light transport: relative errors of regions of the picture by radiosity and, on
-// request, by instant radiosity with more and more lights. See tests/radiosity/reference/room_light.h.
+// measure_rooms [--random N] [--seed N] [--gaps] [--noise SHARE] [--rounds N] [--patches N] [--lights] [--regions]
+// [--truths DIR] [FILE...]: the table of `make rooms`. Indirect light of rooms against full light transport: relative
+// errors of regions of the picture by radiosity and, on request, by instant radiosity with more and more lights.
+// `--regions` prints the error of each region, `--truths` keeps what is known of a room's truth for the next time. See
+// tests/radiosity/reference/room_light.h.
 #define DOCTEST_CONFIG_IMPLEMENT
 #include <doctest/doctest.h>
 
@@ -20,28 +22,74 @@ using namespace pocketray;
 
 namespace {
 
-constexpr std::uint32_t kLightCounts[] = {32, 64, 128, 256, 512};
+constexpr std::uint32_t kLightCounts[] = {64, 128, 256, 512};
+
+// Keeps truths as raw numbers.
+bool read_truth(const std::string& path, RoomLight* truth) {
+  std::FILE* file = std::fopen(path.c_str(), "rb");
+  if (file == nullptr) return false;
+  truth->columns = 8, truth->rows = 6;
+  bool ok = true;
+  for (std::vector<double>* part : {&truth->sum, &truth->error, &truth->half[0], &truth->half[1]}) {
+    part->resize(std::size_t(truth->columns) * truth->rows);
+    ok = ok && std::fread(part->data(), sizeof(double), part->size(), file) == part->size();
+  }
+  std::fclose(file);
+  return ok;
+}
+void write_truth(const std::string& path, const RoomLight& truth) {
+  std::FILE* file = std::fopen(path.c_str(), "wb");
+  if (file == nullptr) return;
+  for (const std::vector<double>* part : {&truth.sum, &truth.error, &truth.half[0], &truth.half[1]})
+    std::fwrite(part->data(), sizeof(double), part->size(), file);
+  std::fclose(file);
+}
+
+void print_regions(const RoomLight& found, const RoomLight& truth) {
+  for (std::uint32_t row = 0; row < truth.rows; ++row) {
+    for (std::uint32_t column = 0; column < truth.columns; ++column) {
+      const std::size_t i = std::size_t(row) * truth.columns + column;
+      std::printf(" %+6.1f (%7.2f)", truth.sum[i] > 0 ? 100 * (found.sum[i] / truth.sum[i] - 1) : 0.0, truth.sum[i]);
+    }
+    std::printf("\n");
+  }
+}
 
 struct Measurement {
-  std::uint32_t directions = 256, patches = 1200;
-  bool lights = false;
+  TruthOptions truth = {64, 8, .007};
+  std::uint32_t patches = 1200;
+  bool lights = false, regions = false;
+  std::string truths;
   int rooms = 0, failed = 0;
   double sum_of_means = 0, worst = 0;
 
+  RoomLight truth_of(const char* name, const Scene& scene, const Settings& settings) {
+    RoomLight light;
+    const std::string path = truths + "/" + name;
+    if (!truths.empty() && read_truth(path, &light)) return light;
+    light = true_light(scene, settings, truth);
+    if (!truths.empty()) write_truth(path, light);
+    return light;
+  }
+
   void measure(const char* name, const Scene& scene) {
     const Settings settings = room_settings(64, 48);
-    const RoomLight truth = true_light(scene, settings, directions);
-    const RoomErrors e = compare_light(stored_light(scene, settings, patches, 2), truth);
+    const RoomLight light = truth_of(name, scene, settings);
+    StoredCost cost;
+    const RoomLight stored = stored_light(scene, settings, patches, 2, &cost);
+    const RoomErrors e = compare_light(stored, light);
     const bool holds = e.mean <= .03 && std::fabs(e.worst) <= .1;
     ++rooms, failed += !holds, sum_of_means += e.mean;
     if (std::fabs(e.worst) > std::fabs(worst)) worst = e.worst;
-    std::printf("| %s | %.1f %% | %+.1f %% ± %.1f at %u, %u | %+.1f %% | %.1f %% |", name, 100 * e.mean, 100 * e.worst,
-                100 * e.worst_noise, static_cast<unsigned>(e.region % truth.columns),
-                static_cast<unsigned>(e.region / truth.columns), 100 * e.total, 100 * e.noise);
+    std::printf("| %s | %.1f | %+.1f ± %.1f at %u, %u | %+.1f | %.1f | %u | %.2f | %.1f |", name, 100 * e.mean,
+                100 * e.worst, 100 * e.worst_noise, static_cast<unsigned>(e.region % light.columns),
+                static_cast<unsigned>(e.region / light.columns), 100 * e.total, 100 * e.noise, cost.patches,
+                static_cast<double>(cost.bytes) / (1 << 20), cost.seconds);
     if (lights)
       for (std::uint32_t count : kLightCounts)
-        std::printf(" %.1f |", 100 * compare_light(instant_light(scene, settings, count), truth).mean);
+        std::printf(" %.1f |", 100 * compare_light(instant_light(scene, settings, count), light).mean);
     std::printf("%s\n", holds ? "" : "  <-");
+    if (regions) print_regions(stored, light);
     std::fflush(stdout);
   }
 };
@@ -68,11 +116,17 @@ int main(int argc, char** argv) {
   doctest::Context context;
   context.setAsDefaultForAssertsOutOfTestCases();
   Measurement m;
-  std::printf("| room | mean | worst | all light | noise |\n|---|---|---|---|---|\n");
+  std::printf("| room | mean | worst | all light | noise | patches | MiB | s |\n|---|---|---|---|---|---|---|---|\n");
   for (int i = 1; i < argc; ++i) {
     const bool more = i + 1 < argc;
-    if (!std::strcmp(argv[i], "--directions") && more) {
-      m.directions = static_cast<std::uint32_t>(std::atoi(argv[++i]));
+    if (!std::strcmp(argv[i], "--noise") && more) {
+      m.truth.noise_max = std::atof(argv[++i]);
+    } else if (!std::strcmp(argv[i], "--rounds") && more) {
+      m.truth.rounds_max = static_cast<std::uint32_t>(std::atoi(argv[++i]));
+    } else if (!std::strcmp(argv[i], "--truths") && more) {
+      m.truths = argv[++i];
+    } else if (!std::strcmp(argv[i], "--regions")) {
+      m.regions = true;
     } else if (!std::strcmp(argv[i], "--patches") && more) {
       m.patches = static_cast<std::uint32_t>(std::atoi(argv[++i]));
     } else if (!std::strcmp(argv[i], "--lights")) {

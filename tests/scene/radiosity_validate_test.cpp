@@ -24,13 +24,15 @@ struct Stored {
   Vec3 values[3] = {};
   RadiositySplit splits[2] = {{{kRadiositySplitBit | 2u << kRadiosityTurnShift | 1, 0}},
                               {{1u << kRadiosityLevelShift, 0}}};
+  RadiosityCut cuts[2] = {{{0, 0, 0}, {1, 0, 0}, {kRadiosityCutBits | 1, kRadiosityGridBit}},
+                          {{0, 0, 0}, {0, 1, 0}, {kRadiosityGridBit, kRadiosityGridBit}}};
   Scene scene;
   void bind() {
     scene.positions = {positions, 3}, scene.triangles = {&triangle, 1}, scene.materials = {&material, 1};
     scene.radiosity_info = {&info, 1}, scene.radiosity_triangles = {places, 2};
     scene.radiosity_grids = {&grid, 1}, scene.radiosity_nodes = {nodes, 4};
     scene.radiosity_corners = {&corners, 1}, scene.radiosity_values = {values, 3};
-    scene.radiosity_splits = {splits, 2};
+    scene.radiosity_splits = {splits, 2}, scene.radiosity_cuts = {cuts, 2};
   }
 };
 
@@ -72,6 +74,13 @@ TEST_CASE("radiosity_faults_are_named") {
       {[](Stored* s) { s->splits[0].part[1] = kNone; }, "part 0xffffffff"},
       {[](Stored* s) { s->splits[0].part[1] = kRadiositySplitBit | 3u << kRadiosityTurnShift | 1; }, "part 0x70000001"},
       {[](Stored* s) { s->splits[0].part[1] = 1u << kRadiosityTurnShift; }, "part 0x10000000"},
+      {[](Stored* s) { s->places[1] = kRadiosityCutBits | 2; }, "radiosity_triangles[1] refers to cut 2 of 2"},
+      {[nan](Stored* s) { s->cuts[1].across.z = nan; }, "radiosity_cuts[1] is not finite"},
+      {[](Stored* s) { s->cuts[1].part[1] = kRadiosityGridBit | 1; }, "part 0x80000001 of 1 grids"},
+      {[](Stored* s) { s->cuts[1].part[1] = 0; }, "radiosity_cuts[1] has part 0 of 1 grids"},
+      {[](Stored* s) { s->cuts[1].part[0] = kNone; }, "part 0xffffffff"},
+      {[](Stored* s) { s->cuts[0].part[1] = kRadiosityCutBits | 2; }, "part 0xc0000002 of 2 cuts"},
+      {[](Stored* s) { s->cuts[1].part[1] = kRadiosityCutBits | 1; }, "radiosity_cuts[1] has part 0xc0000001"},
       {[](Stored* s) { s->splits[1].part[0] = 0; }, "radiosity_splits[0] has a part of no higher level"},
       {[](Stored* s) { s->splits[0].part[1] = kRadiositySplitBit; },
        "radiosity_splits[0] has a part of no higher level"},

@@ -60,6 +60,7 @@ struct RoomMaker {
     light.intensity = Vec3{1, .9f, .8f} * among(2, 6);
     s->lights.push_back(light);
   }
+  // No plate lies in the plane of a lamp (kGaps): where they overlap, light would be that of either.
   void add_things() {
     for (int i = static_cast<int>(next_u32(&rng) % 4); i > 0; --i) {
       const Vec3 extent = size * Vec3{among(.1f, .3f), among(.1f, .6f), among(.1f, .3f)};
@@ -73,7 +74,7 @@ struct RoomMaker {
       if (chance(.5f))
         rectangle({at * size.x, 0, 0}, {0, 0, reach * size.z}, {0, height * size.y, 0}, material);
       else
-        rectangle({chance(.5f) ? 0 : size.x * (1 - reach), height * size.y * .7f, at * size.z * .6f},
+        rectangle({chance(.5f) ? 0 : size.x * (1 - reach), std::min(height, .95f) * size.y * .7f, at * size.z * .6f},
                   {reach * size.x, 0, 0}, {0, 0, reach * size.z * .4f}, material);
     }
   }

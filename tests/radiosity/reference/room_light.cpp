@@ -3,7 +3,9 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <ctime>
 #include <thread>
 
 #include "effect/setting_list.h"
@@ -42,29 +44,40 @@ std::vector<MattePoint> matte_points(const FrameData& frame) {
   return points;
 }
 
+// A ray that looks through backs of one-sided surfaces.
+struct Look {
+  const FrameData& frame;
+  const Vec3& direction;
+};
+bool is_front(const FrameData& frame, std::uint32_t triangle, const Vec3& direction) {
+  const Triangle& t = frame.scene->triangles[triangle];
+  const Vec3& a = frame.positions[t.vertex(0)];
+  return dot(cross(frame.positions[t.vertex(1)] - a, frame.positions[t.vertex(2)] - a), direction) < 0;
+}
+bool is_seen(const void* context, std::uint32_t triangle, float, float) {
+  const Look& look = *static_cast<const Look*>(context);
+  const Material& m = look.frame.scene->materials[look.frame.scene->triangles[triangle].material()];
+  return !is_culled(m, is_front(look.frame, triangle, look.direction));
+}
+
 // Emission along a ray from a surface, which is not indirect light.
 Vec3d emission_along(const FrameData& frame, const Ray& ray) {
   Hit hit;
-  frame.accel_info->closest(frame.accel, ray, visible_filter(frame), &hit, nullptr);
+  const Look look = {frame, ray.direction};
+  const HitFilter seen = {is_seen, &look, false};
+  frame.accel_info->closest(frame.accel, ray, &seen, &hit, nullptr);
   if (hit.triangle == kNoTriangle) return {0, 0, 0};
-  const Triangle& t = frame.scene->triangles[hit.triangle];
-  const Material& m = frame.scene->materials[t.material()];
-  const Vec3& a = frame.positions[t.vertex(0)];
-  const bool front = dot(cross(frame.positions[t.vertex(1)] - a, frame.positions[t.vertex(2)] - a), ray.direction) < 0;
-  return front || m.double_sided ? to_double(m.emission) : Vec3d{0, 0, 0};
+  return to_double(frame.scene->materials[frame.scene->triangles[hit.triangle].material()].emission);
 }
 
-struct Sample {
-  double light, square;
-};
-Sample light_at(const Reference& reference, const Surface& s, std::uint32_t side, Rng* rng) {
+// The mean over side² directions.
+double light_at(const Reference& reference, const Surface& s, std::uint32_t side, Rng* rng) {
   const FrameData& frame = *reference.world.frame;
   ReferenceOptions options;
   const Vec3 origin = safe_origin(s, 1);
   Vec3 tangent, bitangent;
   make_basis(s.normal, &tangent, &bitangent);
-  const double count = static_cast<double>(side) * side;
-  double sum = 0, squares = 0;
+  double sum = 0;
   for (std::uint32_t i = 0; i < side * side; ++i) {
     const double u = (i / side + static_cast<double>(next_float(rng))) / side,
                  v = (i % side + static_cast<double>(next_float(rng))) / side;
@@ -73,11 +86,16 @@ Sample light_at(const Reference& reference, const Surface& s, std::uint32_t side
                            s.normal * static_cast<float>(std::sqrt(1 - u));
     const Vec3d all = sample_radiance(reference, options, to_double(origin), to_double(direction), rng);
     const Vec3d straight = emission_along(frame, {origin, direction, __builtin_inff()});
-    const double light = brightness(to_double(s.diffuse) * (all - straight));
-    sum += light, squares += light * light;
+    sum += brightness(to_double(s.diffuse) * (all - straight));
   }
-  return {sum / count, std::max(0.0, squares / count - sum / count * (sum / count)) / count};
+  return sum / (static_cast<double>(side) * side);
 }
+
+// Sums over rounds, by halves.
+struct PixelSamples {
+  Rng rng[2];
+  double sum[2] = {0, 0};
+};
 
 RoomLight empty_light(std::uint32_t width, std::uint32_t height) {
   RoomLight light;
@@ -89,9 +107,30 @@ std::size_t region_of(const RoomLight& light, std::uint32_t width, std::uint32_t
   return std::size_t(pixel / width / kRegionSide) * light.columns + pixel % width / kRegionSide;
 }
 
+RoomLight light_of_samples(const std::vector<PixelSamples>& samples, const std::vector<std::uint32_t>& rounds,
+                           std::uint32_t width, std::uint32_t height) {
+  RoomLight light = empty_light(width, height);
+  light.error = light.half[0] = light.half[1] = light.sum;
+  for (std::uint32_t i = 0; i < samples.size(); ++i) {
+    const std::size_t region = region_of(light, width, i);
+    const double a = samples[i].sum[0] / rounds[region], b = samples[i].sum[1] / rounds[region];
+    light.half[0][region] += a, light.half[1][region] += b, light.sum[region] += .5 * (a + b);
+    light.error[region] += .25 * (a - b) * (a - b);
+  }
+  for (double& error : light.error) error = std::sqrt(error);
+  return light;
+}
+
+double least_that_counts(const RoomLight& light) {
+  double all = 0;
+  int lit = 0;
+  for (double sum : light.sum) all += sum, lit += sum > 0;
+  return lit ? kRegionCounts * all / lit : 0;
+}
+
 }  // namespace
 
-RoomLight true_light(const Scene& scene, const Settings& chosen, std::uint32_t direction_count) {
+RoomLight true_light(const Scene& scene, const Settings& chosen, const TruthOptions& options) {
   Settings settings = chosen;
   settings.indirect = IndirectChoice::none;
   const auto test = make_renderer(scene, settings);
@@ -101,25 +140,31 @@ RoomLight true_light(const Scene& scene, const Settings& chosen, std::uint32_t d
   Arena arena = make_arena("reference", memory.data(), memory.size());
   const Reference reference = make_reference(frame, &arena);
   const std::vector<MattePoint> points = matte_points(frame);
-  const std::uint32_t width = settings.width,
-                      side = static_cast<std::uint32_t>(std::sqrt(static_cast<double>(direction_count)) + .5);
-  std::vector<Sample> samples(points.size(), {0, 0});
-  auto follow = [&](std::uint32_t first, std::uint32_t step) {
-    for (std::uint32_t i = first; i < points.size(); i += step) {
-      if (!points[i].is_matte) continue;
-      Rng rng = make_rng(1, i);
-      samples[i] = light_at(reference, points[i].surface, side, &rng);
-    }
-  };
-  std::thread other(follow, 1u, 2u);
-  follow(0, 2);
-  other.join();
-  RoomLight light = empty_light(width, settings.height);
-  light.error.assign(light.sum.size(), 0);
-  for (std::uint32_t i = 0; i < points.size(); ++i)
-    light.sum[region_of(light, width, i)] += samples[i].light,
-        light.error[region_of(light, width, i)] += samples[i].square;
-  for (double& error : light.error) error = std::sqrt(error);
+  const std::uint32_t width = settings.width, height = settings.height,
+                      side = static_cast<std::uint32_t>(std::sqrt(static_cast<double>(options.directions)) + .5);
+  std::vector<PixelSamples> samples(points.size());
+  for (std::uint32_t i = 0; i < samples.size(); ++i)
+    for (std::uint32_t half = 0; half < 2; ++half) samples[i].rng[half] = make_rng(1 + half, i);
+  RoomLight light = empty_light(width, height);
+  std::vector<std::uint32_t> rounds(light.sum.size(), 0);
+  std::vector<char> goes_on(light.sum.size(), 1);
+  for (std::uint32_t round = 0; round < options.rounds_max; ++round) {
+    std::atomic<std::uint32_t> next{0};
+    auto follow = [&] {
+      for (std::uint32_t i = next++; i < points.size(); i = next++)
+        if (points[i].is_matte && goes_on[region_of(light, width, i)])
+          for (int half = 0; half < 2; ++half)
+            samples[i].sum[half] += light_at(reference, points[i].surface, side, &samples[i].rng[half]);
+    };
+    std::thread other(follow);
+    follow();
+    other.join();
+    for (std::size_t r = 0; r < rounds.size(); ++r) rounds[r] += goes_on[r] != 0;
+    light = light_of_samples(samples, rounds, width, height);
+    const double least = least_that_counts(light);
+    for (std::size_t r = 0; r < rounds.size(); ++r)
+      goes_on[r] = goes_on[r] && light.sum[r] > .5 * least && light.error[r] > options.noise_max * light.sum[r];
+  }
   return light;
 }
 
@@ -139,30 +184,33 @@ RoomLight rendered_light(const Scene& scene, const Settings& settings) {
 
 RoomErrors compare_light(const RoomLight& found, const RoomLight& truth) {
   REQUIRE(found.sum.size() == truth.sum.size());
-  double all = 0, all_found = 0;
-  std::size_t lit = 0;
-  for (std::size_t i = 0; i < truth.sum.size(); ++i)
-    all += truth.sum[i], all_found += found.sum[i], lit += truth.sum[i] > 0;
+  const bool sampled = !truth.error.empty();
+  double all = 0, all_found = 0, most = 0;
+  for (std::size_t i = 0; i < truth.sum.size(); ++i) all += truth.sum[i], all_found += found.sum[i];
   RoomErrors errors;
   if (!(all > 0)) return errors;
   errors.total = all_found / all - 1;
+  const double least = least_that_counts(truth);
   int count = 0;
   for (std::size_t i = 0; i < truth.sum.size(); ++i) {
-    if (!(truth.sum[i] > .25 * all / static_cast<double>(lit))) continue;
-    const double error = found.sum[i] / truth.sum[i] - 1;
-    if (std::fabs(error) > std::fabs(errors.worst)) {
-      errors.worst = error, errors.region = i;
-      if (!truth.error.empty()) errors.worst_noise = truth.error[i] / truth.sum[i];
+    if (!(truth.sum[i] > least)) continue;
+    const double chosen = found.sum[i] - (sampled ? truth.half[0] : truth.sum)[i],
+                 error = (found.sum[i] - (sampled ? truth.half[1] : truth.sum)[i]) / truth.sum[i];
+    if (std::fabs(chosen) / truth.sum[i] > most) {
+      most = std::fabs(chosen) / truth.sum[i], errors.worst = error, errors.region = i;
+      if (sampled) errors.worst_noise = std::sqrt(2.0) * truth.error[i] / truth.sum[i];
     }
-    errors.mean += std::fabs(error), ++count;
-    if (!truth.error.empty()) errors.noise += truth.error[i] / truth.sum[i];
+    errors.mean += chosen > 0 ? error : -error, ++count;
+    if (sampled) errors.noise += truth.error[i] / truth.sum[i];
   }
   errors.mean /= count, errors.noise /= count;
   return errors;
 }
 
-RoomLight stored_light(Scene scene, Settings settings, std::uint32_t patch_count, std::uint32_t threads) {
+RoomLight stored_light(Scene scene, Settings settings, std::uint32_t patch_count, std::uint32_t threads,
+                       StoredCost* cost) {
   RadiositySolution solution;
+  const std::clock_t begin = std::clock();
   {
     Settings small;
     small.width = small.height = 4, small.indirect = IndirectChoice::none;
@@ -173,6 +221,8 @@ RoomLight stored_light(Scene scene, Settings settings, std::uint32_t patch_count
         test->renderer.frame, options, [](double) { return true; }, &solution);
     REQUIRE_MESSAGE(status.ok, status.message);
   }
+  if (cost != nullptr)
+    *cost = {solution.patch_count, solution.bytes(), static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC};
   solution.view(&scene);
   settings.indirect = indirect_choice(Effect::radiosity);
   return rendered_light(scene, settings);

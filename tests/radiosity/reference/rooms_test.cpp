@@ -11,9 +11,8 @@ using namespace pocketray;
 namespace {
 
 // Within the bounds for radiosity, and what noise the truth has here.
-void check_stored(const Scene& scene, std::uint32_t directions) {
-  const Settings settings = room_settings(32, 24);
-  const RoomLight truth = true_light(scene, settings, directions);
+void check_stored(const Scene& scene, const Settings& settings, std::uint32_t directions) {
+  const RoomLight truth = true_light(scene, settings, {directions, 1, 0});
   const RoomErrors e = compare_light(stored_light(scene, settings, 1200, 2), truth);
   MESSAGE("mean ", e.mean, ", worst ", e.worst, ", all light ", e.total, ", noise ", e.noise);
   CHECK(e.mean < .03 + e.noise);
@@ -29,15 +28,16 @@ TEST_CASE("hard_71_lamp_close_to_a_ceiling") {
   count_assertions("3 % in the mean, none beyond 10 %, and the truth's noise");
   for (float gap : {.1f, .01f, .001f}) {
     CAPTURE(gap);
-    check_stored(room_with_lamp(gap, true)->scene, 64);
+    check_stored(room_with_lamp(gap, true)->scene, room_settings(32, 24), 36);
   }
 }
 
-// Goal: the same in rooms of all sorts. Method: from a seed.
+// Goal: the same in rooms of all sorts. Method: from seeds: a niche in 2, a one-sided lamp whose back is seen through
+// in 12, a lamp close to a ceiling in 28, a partition in 42, two lamps in 46 of which one lights the other's back.
 TEST_CASE("rooms_from_a_seed_have_their_indirect_light") {
-  for (std::uint64_t seed : {1, 2}) {
+  for (std::uint64_t seed : {1, 2, 12, 28, 42, 46}) {
     CAPTURE(seed);
-    check_stored(random_room(seed)->scene, 64);
+    check_stored(random_room(seed)->scene, room_settings(64, 48), 36);
   }
 }
 
