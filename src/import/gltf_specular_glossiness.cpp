@@ -2,7 +2,7 @@
 // KHR_materials_specular, for diffuse colour c, specular colour s and glossiness g:
 //   base colour = c · (1 − max(s)), metallic 0, roughness = 1 − g
 //   specular colour factor = s / 0.04, its texture's colours that of the specularGlossinessTexture
-// The texture's alpha, which scales g, counts by its mean, and so do its colours in what the base colour loses.
+// The mean of the texture's alpha scales g, and the mean of its colours reduces the base colour.
 #include <algorithm>
 
 #include "import/gltf.h"
