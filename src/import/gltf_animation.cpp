@@ -37,7 +37,7 @@ std::vector<Clip> find_clips(GltfFile* file) {
     if (clips.empty() || clips.back().animation != drive.animation) clips.push_back({drive.animation, {}});
     if (drives(clips.back(), drive.target))
       note_remark(file->builder,
-                  "an animation drives " + gltf_target_name(*file, drive.target) + " twice: the first counts");
+                  "an animation drives " + gltf_target_name(*file, drive.target) + " twice: the first is used");
     else
       clips.back().drives.push_back(&drive);
   }
@@ -63,7 +63,7 @@ void choose_clips(GltfFile* file, std::vector<Clip>* clips) {
   }
   if (!left_out.empty())
     note_remark(file->builder,
-                "animations that drive what another drives do not play: --animation chooses one (" + left_out + ")");
+                "animations that share a target do not play together: --animation chooses one (" + left_out + ")");
 }
 
 void multiply(GltfKeys* keys, float factor) {
@@ -139,7 +139,7 @@ void write_base_color(GltfFile* file, const GltfDrive& drive, std::uint32_t inde
 
 void write_emission(GltfFile* file, const GltfDrive& drive, std::uint32_t index, Clip* clip) {
   Material& material = file->builder->out->materials[index];
-  if (material.unlit) return note_unused(file->builder, "animation of what unlit materials emit");
+  if (material.unlit) return note_unused(file->builder, "animation of unlit materials' emission");
   const tinygltf::Material& source = file->model.materials[static_cast<std::size_t>(drive.target.index)];
   const tinygltf::Value* extension = gltf_extension(source.extensions, "KHR_materials_emissive_strength");
   GltfKeys keys = drive.keys;

@@ -24,7 +24,7 @@ std::size_t values_per_key(const GltfKeys& keys, std::size_t width) {
 const char* fault_of(const GltfKeys& keys, std::size_t width) {
   if (width == 0) return "there are no morph targets";
   if (keys.times.empty() || keys.values.size() != keys.times.size() * values_per_key(keys, width))
-    return "it has not one value for each key";
+    return "it does not have one value per key";
   if (keys.times[0] < 0) return "it begins before time 0";
   return std::is_sorted(keys.times.begin(), keys.times.end()) ? nullptr : "its keys descend";
 }
@@ -68,7 +68,7 @@ void read_channel(GltfFile* file, std::size_t index, const tinygltf::AnimationCh
   if (const char* fault = fault_of(drive.keys, width))
     return note_remark(file->builder, "the animation of " + what + " is left out: " + fault);
   if (drop_equal_times(values_per_key(drive.keys, width), &drive.keys))
-    note_remark(file->builder, "of keys at equal times, the last counts");
+    note_remark(file->builder, "of keys at equal times, the last is used");
   charge_bytes(file->builder, (drive.keys.times.size() + drive.keys.values.size()) * sizeof(float), "the animation");
   file->drives.push_back(std::move(drive));
 }

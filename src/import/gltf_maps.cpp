@@ -97,7 +97,7 @@ void gltf_read_maps(GltfFile* file, const tinygltf::Material& source, bool is_cl
     maps->specular_color = gltf_texture_use(file, specular.color);
   } else if (is_rough || specular.share.index >= 0 || specular.color.index >= 0) {
     note_remark(file->builder,
-                "metallic-roughness and specular textures of transparent materials count only by their mean");
+                "only the mean of metallic-roughness and specular textures of transparent materials is used");
   }
   maps->normal = gltf_texture_use(file, plain(source.normalTexture), TexelKind::numbers);
   const double scale = source.normalTexture.scale, most = static_cast<double>(kNormalScaleMax);

@@ -29,7 +29,7 @@ Vec3 color3(const std::vector<double>& values, const Vec3& fallback) {
 // Mean of a data texture's channel; 1 without the texture.
 float texture_mean(GltfFile* file, int texture, int channel, const char* name) {
   if (texture < 0) return 1;
-  note_remark(file->builder, std::string(name) + " textures count only by their mean");
+  note_remark(file->builder, std::string("only the mean of ") + name + " textures is used");
   return channel_mean(gltf_image(file, texture, TexelKind::numbers), channel);
 }
 

@@ -100,7 +100,7 @@ void read_tangents(GltfFile* file, const tinygltf::Primitive& primitive, MeshDat
     values = gltf_floats(file, accessor, 4, "TANGENT");
     require_count(values.size() / 4, mesh->positions.size(), "TANGENT");
   } catch (const ImportError& error) {
-    note_remark(file->builder, std::string("tangents are made anew: ") + error.what());
+    note_remark(file->builder, std::string("tangents are recomputed: ") + error.what());
     return;
   }
   std::size_t unusable = 0;
@@ -112,7 +112,7 @@ void read_tangents(GltfFile* file, const tinygltf::Primitive& primitive, MeshDat
     mesh->tangents.push_back({is_usable ? to_float(normalize(flat)) : Vec3{0, 0, 0}, t[3] < 0 ? -1 : 1});
   }
   if (unusable)
-    note_remark(file->builder, "tangents that are zero, along the normal or without handedness are made anew");
+    note_remark(file->builder, "tangents that are zero, along the normal or without handedness are recomputed");
 }
 
 void read_skin_weights(GltfFile* file, const tinygltf::Primitive& primitive, MeshData* mesh) {

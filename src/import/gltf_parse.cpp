@@ -195,7 +195,7 @@ void drop_textures_without_image(GltfFile* file, Json* root) {
   for (const Json& texture : *textures) has_image.push_back(member(texture, "source") != nullptr);
   bool dropped = false;
   drop_textures(has_image, &*materials, &dropped);
-  if (dropped) note_unused(file->builder, "textures in other formats than PNG, JPEG and WebP");
+  if (dropped) note_unused(file->builder, "textures in formats other than PNG, JPEG and WebP");
 }
 
 // tinygltf requires indices to lie in a view, even for compressed primitives; gltf_decompress() replaces it.

@@ -41,7 +41,7 @@ tinygltf::Material gltf_without_specular_glossiness(GltfFile* file, const tinygl
   Vec3 mean = {1, 1, 1};
   if (texture.index >= 0) {
     mean = gltf_color_mean(file, texture.index);
-    note_remark(file->builder, "glossiness textures count only by their mean");
+    note_remark(file->builder, "only the mean of glossiness textures is used");
     glossiness *= static_cast<double>(channel_mean(gltf_image(file, texture.index, TexelKind::colors), 3));
   }
   double reflected = 0;

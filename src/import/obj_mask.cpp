@@ -103,7 +103,7 @@ bool put_mask(const Image& mask, const MtlMap& mask_map, bool has_color, Image* 
       made.width = std::min(std::max(made.width, repeated.width * times[0]), side_max);
       made.height = std::min(std::max(made.height, repeated.height * times[1]), side_max);
     } else {
-      note_remark(builder, "a map_d is placed as its map_Kd, since neither repeats within the other");
+      note_remark(builder, "a map_d is placed like its map_Kd, since neither repeats within the other");
       inner = *map;
     }
   }

@@ -93,7 +93,7 @@ Vec3d choose_origin(const ExactExtent& extent, SceneBuilder* builder) {
   char told[200];
   std::snprintf(told, sizeof told,
                 "the model is far from the origin, so it is moved by (%.12g, %.12g, %.12g) to keep its shape; --camera "
-                "and --aov position count from its own origin",
+                "and --aov position use its own coordinates",
                 -origin.x, -origin.y, -origin.z);
   note_remark(builder, told);
   return origin;
