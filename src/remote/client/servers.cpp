@@ -18,7 +18,7 @@ namespace pocketray {
 namespace {
 
 constexpr platform::LinkBackend const& kNet = platform::kTcpLink;
-// Chosen: the longest after which a picture still seems to follow the buttons at once.
+// Chosen: the longest delay after which a picture still seems to follow the buttons at once.
 constexpr double kLongFrameNs = 100e6;
 // Chosen: pictures in files are worth waiting for, but not for a server that never sends their light.
 constexpr std::uint64_t kLightWaitNs = 60'000'000'000;
@@ -210,14 +210,14 @@ bool advance_frame(Servers* servers, Renderer* renderer, std::uint64_t slice_ns,
 
 void tend_client(Servers* servers) { advance_client(&connected(servers)->client, 0); }
 
-// Servers were asked for rows of a picture and gave none: they may not give any of the next one, either.
+// True if servers were asked for rows of a picture and sent none: they may send none of the next one, either.
 bool gave_nothing(const FrameShare& share) {
   auto some = [](std::uint32_t count) { return count > 0; };
   return std::any_of(std::begin(share.row_end), std::end(share.row_end), some) &&
          std::none_of(std::begin(share.server_rows), std::end(share.server_rows), some);
 }
 
-// Servers count as in use once one has passed its overture, as a refined picture shows sooner than a complete one.
+// Servers count as in use once one has passed its overture, since a refined picture shows sooner than a complete one.
 ServersState state_of(const Servers& servers) {
   const ConnectedServers& s = connected(servers);
   const Client& client = s.client;

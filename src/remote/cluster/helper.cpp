@@ -49,7 +49,7 @@ Status ClusterHelper::work(const TeamMessage& message) {
   return failure("rank 0 sent a message of an unknown kind: its program is another one");
 }
 
-// Asks for the next part, or tells that it has all scenes.
+// Requests the next part, or reports that it has all scenes.
 Status ClusterHelper::take_scene(TeamReader* reader) {
   ClusterScene scene;
   if (!read_plain(reader, &scene)) return failure("rank 0 sent a part of a message: its program is another one");
@@ -103,7 +103,7 @@ Status ClusterHelper::prepare_job(Session* session, const ClusterPrepare& asked)
     Slice slice;
     WireError code;
     RETURN_IF_ERROR(step_job(session, tools, kSliceNs, &slice, &code));
-    session->own_exposure = asked.own_exposure;  // rank 0 has measured it
+    session->own_exposure = asked.own_exposure;  // measured by rank 0
     if (session->job.stage == JobStage::own_exposure) session->job.stage = JobStage::aim;
   }
   return success();

@@ -1,4 +1,4 @@
-// Scenes and answers; lead_rows.cpp gives out rows.
+// Scenes and answers; lead_rows.cpp assigns rows.
 #include "remote/cluster/lead.h"
 
 #include <algorithm>
@@ -15,7 +15,7 @@ namespace pocketray {
 namespace {
 
 constexpr double kWaitSeconds = 0.05;
-// Of a scene, sent at once. Chosen: 64 helpers that start together make rank 0 hold 64 MiB for a moment.
+// Bytes of a scene sent at once. Chosen: 64 helpers that start together make rank 0 hold 64 MiB for a moment.
 constexpr std::uint64_t kSceneBytes = 1 << 20;
 // Chosen: pieces take milliseconds.
 constexpr std::uint64_t kPatienceNs = 2'000'000'000;
@@ -127,9 +127,9 @@ void ClusterLead::take_back(std::uint32_t rank) {
     if (slot.is_begun) take_back_rows(&slot.share, static_cast<std::uint16_t>(rank));
 }
 
-// Takes one answer; false if none came in time.
+// Takes one answer; returns false if none came in time.
 bool ClusterLead::take_answer(double seconds) {
-  SealPause pause;  // a message comes on the heap
+  SealPause pause;  // a message is received on the heap
   TeamMessage message;
   bool there;
   Status status = receive_from_helpers(team_, seconds, &message, &there);
@@ -147,7 +147,7 @@ bool ClusterLead::take_answer(double seconds) {
   return true;
 }
 
-// False if it is not the answer to what the rank was asked first.
+// Returns false unless it answers the rank's oldest question.
 bool ClusterLead::answer_fits(std::uint32_t from, const TeamMessage& message) {
   Rank* rank = &ranks_[from];
   if (rank->asked_count == 0) return false;
