@@ -141,7 +141,7 @@ const char* malformed_text(const MessageStream& s) {
   // A TLS alert or handshake [RFC 5246, sec. 6.2.1]; no message has such a type.
   const std::uint8_t* bytes = s.in.data + s.in_begin;
   const bool is_tls = input_bytes(s) >= 2 && (bytes[0] == 21 || bytes[0] == 22) && bytes[1] == 3;
-  return is_tls ? "it asks for a key: use the one that it was given (--key)" : "it sent a malformed message";
+  return is_tls ? "it requires a key: use the server's key (--key)" : "it sent a malformed message";
 }
 
 Status check_version(const Hello& hello) {

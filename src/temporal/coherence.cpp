@@ -133,12 +133,12 @@ bool follow_frame(Coherence* c, const FrameData& frame, const char** why) {
   bool lights_changed =
       !*why && (differ(c->lights.data, frame.lights) || differ(c->light_polygons.data, frame.light_polygons));
   if (lights_changed && has(frame.mask, Effect::source_selection)) {
-    *why = "a light changed, and with it the selection of the others";
+    *why = "a light changed; light selection is recomputed";
     lights_changed = false;
   }
   const bool is_compensated = pocketray::is_compensated(frame.settings, frame.mask);
   if (!*why && is_compensated && (lights_changed || c->recoloring.any)) {
-    *why = "a light or a surface changed, and with it what compensation finds";
+    *why = "a light or material changed; compensation is recomputed";
     lights_changed = false;
   }
   c->search = {&frame,

@@ -264,7 +264,7 @@ const char* follow_recoloring(const FrameData& frame, const MovingGeometry& movi
     if (!moving.changed) continue;
     // Its blocking in its last position is not known.
     const std::uint32_t place = moving_index(moving, i);
-    if (place != kNoTriangle && moving.triangle_changed[place]) return "a surface moved and stops other light";
+    if (place != kNoTriangle && moving.triangle_changed[place]) return "a recoloured surface moved";
   }
   make_groups(frame, count, r);
   return nullptr;

@@ -88,7 +88,7 @@ struct PathSuspects {
   SourceSet virtual_lights;
 };
 
-// What rays of some adjacent tiles may meet a change on the way to: the camera, interleaved sources, and the first
+// Targets to which rays of some adjacent tiles may meet a change: the camera, interleaved sources, and the first
 // lights, bit i for light i.
 struct Suspects {
   bool seen;

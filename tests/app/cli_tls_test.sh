@@ -64,7 +64,7 @@ shared=(--size 64x48 --threads 1 --frames 0:7)
 
 # Goal: whoever has another key, or none, is told so in one line on both sides, and renders alone.
 expect tls_other_key 1 "$address: its key is another: copy the same key file to both sides" scenes --server "$address" --key other.key
-expect tls_no_key 1 "$address: it asks for a key: use the one that it was given \(--key\)" scenes --server "$address"
+expect tls_no_key 1 "$address: it requires a key: use the server's key \(--key\)" scenes --server "$address"
 expect tls_render_with_another_key 0 'its key is another.*continuing without it' \
   render seesaw "${shared[@]}" --server "$address" --key other.key -o refused.ppm
 check tls_refused_gives_the_same_picture cmp -s alone-0007.ppm refused-0007.ppm
@@ -73,7 +73,7 @@ check serve_tells_of_no_key grep -q 'disconnected: it does not use TLS' secret.o
 
 # Goal: with a key a server may listen to others, and pictures are the same as without one, whoever renders. Method: a
 # sequence shared, one by a device without the scene, in a window, fetched; sealed, like everything here.
-expect_in_use tls_shared 'gave [1-9]' render seesaw "${shared[@]}" --emulate pi-zero --coherence off "${with[@]}" -o shared.ppm
+expect_in_use tls_shared ', sent [1-9]' render seesaw "${shared[@]}" --emulate pi-zero --coherence off "${with[@]}" -o shared.ppm
 expect tls_memory_is_in_the_map 0 'frame +encrypted links +[0-9.]+ KiB' render seesaw "${shared[@]}" "${with[@]}" --plan -o plan.ppm
 expect tls_thin 0 'rendered 0 %' render seesaw "${shared[@]}" "${with[@]}" --memory 500K -o thin.ppm
 for n in 0 1 2 3 4 5 6 7; do

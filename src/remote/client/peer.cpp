@@ -144,7 +144,7 @@ void take_coarse(Client* client, RemoteServer* server, CoarsePicture coarse) {
   coarse.frame = frame_of(coarse.frame, server->asked.frame);
   server->coarse_due = coarse.frame == server->asked.frame ? 0 : server->coarse_due - 1;
   if (coarse.pixels.count != coarse_bytes(client->settings.width, client->settings.height, client->options.format))
-    return lose_server(client, server, "it sent a coarse picture of another size");
+    return lose_server(client, server, "it sent a coarse picture of the wrong size");
   server->frame.bytes += coarse_prefix_bytes() + coarse.pixels.count;
   if (coarse.frame == client->request.frame && !client->complete) show_coarse(client, coarse);
 }
@@ -225,7 +225,7 @@ void send(Client* client, RemoteServer* server, const Message& message) {
 const char* wire_error_text(WireError code) {
   switch (code) {
     case WireError::wrong_version:
-      return "it speaks another protocol version: update one of the two";
+      return "it speaks a different protocol version: update one of the two";
     case WireError::malformed:
       return "it could not decode a message";
     case WireError::unknown_scene:

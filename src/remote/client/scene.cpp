@@ -183,7 +183,7 @@ Status open_thin(ConnectedServers* s, const CommonOptions& o, const OutputNeed& 
     return failure("--fov needs the scene on this device: raise --memory to hold it, or use --camera");
   ViewQuery query;
   if (o.animation.size() >= kNameBytes)
-    return failure("--animation is '%.60s': no animation has so long a name", o.animation.c_str());
+    return failure("--animation is '%.60s': no animation has a name that long", o.animation.c_str());
   std::snprintf(query.animation, sizeof query.animation, "%s", o.animation.c_str());
   query.settings = opened->renderer.settings;
   query.camera_index = static_cast<std::uint16_t>(o.camera_index);  // below kCameraCountMax: options are checked

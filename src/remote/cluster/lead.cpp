@@ -75,7 +75,7 @@ Status ClusterLead::welcome(const SceneStore& store) {
     if (message.bytes[0] == kWantScene) {
       ClusterWant want;
       if (!read_plain(&reader, &want) || !has_part(store, want))
-        return failure("rank %u: its program is not that of rank 0", message.from);
+        return failure("rank %u: its program differs from rank 0's", message.from);
       send_scene(team_, message.from, store, want);
       continue;
     }
@@ -83,7 +83,7 @@ Status ClusterLead::welcome(const SceneStore& store) {
     rank->threads = static_cast<std::uint32_t>(reader.number());
     const bool is_first = message.bytes[0] == kReady && !rank->is_ready;
     if (!is_first || !reader.ok() || identity != identity_ || rank->threads == 0)
-      return failure("rank %u: its program or options are not those of rank 0: start all ranks with the same command",
+      return failure("rank %u: its program or options differ from rank 0's: start all ranks with the same command",
                      message.from);
     rank->is_ready = true;
     ++ready_count;
@@ -139,7 +139,7 @@ bool ClusterLead::take_answer(double seconds) {
   if (rank->is_lost) return true;
   rank->heard_ns = clock_ns();
   if (!answer_fits(message.from, message)) {
-    tell(message.from, "answered what it was not asked: it gets no more rows, and the others trace those it had");
+    tell(message.from, "sent an unrequested answer: it gets no more rows, and the others trace its rows");
     rank->is_lost = true;
     take_back(message.from);
   }

@@ -175,7 +175,7 @@ void read_hello(Server* server, Guest* guest) {
   DecodeState state = take_message(&guest->messages, &message);
   if (state == DecodeState::message && message.type == MessageType::hello) {
     if (message.hello.version == kWireVersion) return seat(server, guest, message.hello);
-    log_guest(server, *guest, "it speaks another protocol version");
+    log_guest(server, *guest, "it speaks a different protocol version");
     return send_away(server, guest, WireError::wrong_version);
   }
   if (state != DecodeState::need_more) {
