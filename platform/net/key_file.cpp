@@ -76,7 +76,7 @@ bool create_key_file(const char* path, const SharedKey& key, FileError* error) {
   PLATFORM_CHECK(path != nullptr && error != nullptr);
   int file = ::open(path, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, S_IRUSR | S_IWUSR);
   if (file < 0 && errno == EEXIST)
-    return refuse(error, "there is a file of that name: remove it first, or choose another with -o");
+    return refuse(error, "a file of that name exists: remove it first, or choose another with -o");
   if (file < 0) return refuse(error, "%s", strerror(errno));
   char line[kLineBytes + 1];
   memcpy(line, kPrefix, kPrefixBytes);

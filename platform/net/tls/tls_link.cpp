@@ -218,7 +218,7 @@ LinkResult tls_fail(TlsLink* link, TlsSlot* slot, Error* error) {
 LinkResult tls_fail_in_time(TlsLink* link, TlsSlot* slot, Error* error) {
   std::snprintf(slot->error.text, sizeof slot->error.text,
                 slot->accepted ? "%.95s: it did not complete a TLS handshake"
-                               : "%.95s: no answer to the TLS handshake: does it use TLS, and has it a key (--key)?",
+                               : "%.95s: no answer to the TLS handshake: does it use TLS and a key (--key)?",
                 slot->name);
   ++link->record.failures;
   return break_off(link, slot, error);

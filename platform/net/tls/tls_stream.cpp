@@ -223,10 +223,10 @@ void tls_tell(const TlsStream& tls, const char* peer, Error* error) {
       what = "the peer closed the connection: it was stopped, or rejected what it received";
       break;
     case TlsFault::plain:
-      what = "it does not use TLS: give it a key, too, or use none here (--key)";
+      what = "it does not use TLS: give it the key, too, or use none here (--key)";
       break;
     case TlsFault::wrong_key:
-      what = "its key is another: copy the same key file to both sides (--key)";
+      what = "its key differs: copy the same key file to both sides (--key)";
       break;
     case TlsFault::refused:
       what = "it offers no TLS with this cipher and a shared key: update one of the two";
