@@ -37,7 +37,8 @@ struct Device {
   const char* channel_order;  // rgb: red in the highest bits; bgr: blue. The driver's report overrides it.
   int rotation;               // degrees clockwise to turn a picture on the screen so that it is upright
   std::size_t memory_bytes;   // default of the memory block: half of Linux's memory, at most 512 MiB
-  const std::uint16_t* keys;  // key codes of up, down, left, right, A, B, X, Y, L, R, start, select; null: a keyboard's
+  const std::uint16_t*
+      keys;  // key codes of up, down, left, right, A, B, X, Y, L, R, start, select; null: those of a keyboard
 
   // For emulation on a desktop.
   int core_count;                       // of its CPU; 0: as many as this machine has
