@@ -1,6 +1,6 @@
-// PLATFORM_CHECK: mistakes of a caller or of a backend itself, never what a device, a file or a peer does; that is an
-// error, and said. Prints both operands and aborts; stays on in release builds. As src/base/check.h, by another name,
-// so that a program may include both. For .cpp files.
+// PLATFORM_CHECK guards against mistakes of a caller or of a backend itself. Faults of a device, a file or a peer are
+// errors with a message instead. Prints both operands and aborts; stays on in release builds. Like src/base/check.h,
+// under another name, so that a program may include both. For .cpp files.
 #pragma once
 #include <cstdio>
 #include <cstdlib>

@@ -4,7 +4,7 @@
 
 namespace platform {
 
-// Fills the bytes; neither waits nor takes memory. False: the system cannot supply any.
+// Fills the bytes; neither waits nor takes memory. Returns false if the system cannot supply any.
 bool random_bytes(void* bytes, std::size_t byte_count);
 
 }  // namespace platform

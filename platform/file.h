@@ -1,4 +1,4 @@
-// Files without the heap: reading a file, replacing a file as a whole. Standard types only.
+// Files without the heap: reading files and replacing them as a whole. Standard types only.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -12,7 +12,7 @@ struct FileError {
 // Files are read, never mapped: data checked in memory must not change when the file does. A mapped file could change
 // after the check, or be truncated, which ends a program with SIGBUS.
 
-// A regular file open for reading, and its size when it was opened.
+// A regular file open for reading, and its size when opened.
 struct FileReader {
   int descriptor = -1;
   std::uint64_t byte_count = 0;
@@ -20,7 +20,7 @@ struct FileReader {
 
 // Never waits. An empty file is an error, and so is anything other than a regular file.
 bool open_reader(const char* path, FileReader* reader, FileError* error);
-// The next `byte_count` bytes. Fails if the file ends before.
+// Reads the next `byte_count` bytes. Fails if the file ends earlier.
 bool read_bytes(FileReader* reader, void* bytes, std::size_t byte_count, FileError* error);
 void close_reader(FileReader* reader);
 
@@ -36,10 +36,10 @@ void unload_file(LoadedFile* file);
 // for start-up: the system takes memory for it.
 bool list_folder(const char* path, void (*found)(void* context, const char* name), void* context, FileError* error);
 
-// Makes a folder within an existing one. Also true if it already exists.
+// Makes a folder within an existing one. Returns true even if it exists.
 bool make_folder(const char* path, FileError* error);
 
-// Makes a private folder in the place for temporary files (TMPDIR or /tmp) and writes its path to `path`. The caller
+// Makes a private folder in the folder for temporary files (TMPDIR or /tmp) and writes its path to `path`. The caller
 // removes it.
 bool make_temporary_folder(char* path, std::size_t path_bytes, FileError* error);
 // Removes a folder and its files, except those whose names begin with a dot; a folder that contains folders stays.
@@ -63,38 +63,38 @@ struct FileWriter {
   char part[kWriterPathBytes + 32] = {0};  // the file written until then
 };
 bool open_writer(const char* path, FileWriter* writer, FileError* error);
-// open_writer() asks this now and then while it waits for the reader of a FIFO; true: it gives up. Null: it waits on.
+// open_writer() calls this periodically while it waits for a FIFO's reader; true: it gives up. Null: it keeps waiting.
 void stop_waiting_if(bool (*stopped)());
 // After a failure further data is ignored; close_writer() reports the failure.
 void write_bytes(FileWriter* writer, const void* bytes, std::size_t byte_count);
-// Replaces bytes written before. False, and nothing happens, where they are written directly.
+// Overwrites bytes written before. Returns false, with no effect, if they are written directly.
 bool rewrite_bytes(FileWriter* writer, std::uint64_t offset, const void* bytes, std::size_t byte_count);
 bool close_writer(FileWriter* writer, FileError* error);
 // Gives up: removes the data written; an older file of that name stays.
 void discard_writer(FileWriter* writer);
 
-// Begins a file that has its name while it grows: PATH holds these bytes, or what was there before; write_bytes() then
-// appends, and close_writer() ends it. For names that the user did not choose: whatever has the name is replaced, never
-// followed or opened, even a symbolic link or a pipe. A file keeps its permissions.
+// Opens a file that has its final name while it grows: PATH holds these bytes, or its previous content; write_bytes()
+// then appends, and close_writer() ends it. For names that the user did not choose: anything of that name is replaced,
+// never followed or opened, even a symbolic link or a pipe. A file keeps its permissions.
 bool open_growing_writer(const char* path, const void* bytes, std::size_t byte_count, FileWriter* writer,
                          FileError* error);
 
-// From here on, only writers of "-" reach standard output, and what is printed there goes to standard error. Fails if
-// standard output is a terminal.
+// From here on, only writers of "-" reach standard output, and printed text goes to standard error. Fails if standard
+// output is a terminal.
 bool keep_output_for_data(FileError* error);
 bool is_output_for_data();
 
-// Whether open_writer() would succeed; ask before work whose result goes there. Does not open pipes.
+// Returns whether open_writer() would succeed; call before work whose result goes there. Does not open pipes.
 bool can_write(const char* path, FileError* error);
-// Whether open_writer() would write there directly.
+// Returns whether open_writer() would write there directly.
 bool is_device_or_pipe(const char* path);
-// Whether the last name of a path is of a regular file, not a link to one, or of nothing.
+// Returns whether the last name of a path is a regular file, not a link to one, or does not exist.
 bool is_plain_or_absent(const char* path);
-// Whether two paths name the same file, through links of either kind; the file need not exist yet. False for devices
+// Returns whether two paths name one file, through links of either kind; the file need not exist yet. False for devices
 // and pipes.
 bool is_same_file(const char* one, const char* other);
 
-// Whether standard error is a terminal.
+// Returns whether standard error is a terminal.
 bool stderr_is_terminal();
 
 }  // namespace platform

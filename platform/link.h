@@ -15,7 +15,7 @@ namespace platform {
 constexpr int kLinkStreamsMax = 256;  // of one Link, including listeners
 constexpr std::size_t kLinkNameBytes = 96;
 
-// Where to reach a peer, or where to wait for peers.
+// Address of a peer, or address on which to wait for peers.
 struct LinkAddress {
   static constexpr int kPlacesMax = 4;
   char text[kLinkNameBytes] = {0};                       // as given, for messages
@@ -38,7 +38,7 @@ struct LinkOptions {
   std::uint64_t (*now_ns)() = nullptr;  // Backend::now_ns; the null link has its own clock
 };
 
-// What poll() waits for, and its result.
+// Input and result of poll().
 struct LinkWait {
   int stream = -1;
   bool want_read = false;   // bytes, the end or a failure; for a listener, a connection to accept
@@ -55,7 +55,7 @@ struct LinkBackend {
   const char* name;
   // Bytes that a Link of that many streams takes.
   std::size_t (*need)(int stream_count_max);
-  // Null on failure; `error` says why.
+  // Returns null on failure; `error` says why.
   Link* (*open)(const LinkOptions& options, Error* error);
 
   // Parses "HOST:PORT", "[IPv6]:PORT", or ":PORT" and "PORT" for this machine only. Looking up a name, unlike a number,
@@ -70,7 +70,7 @@ struct LinkBackend {
   int (*listen)(Link* link, const LinkAddress& address, Error* error);
   // Accepts the next waiting peer. After `failed` the listener remains usable: only that peer is lost.
   LinkResult (*accept)(Link* link, int listener, int* stream, Error* error);
-  // "HOST:PORT" in numbers: of a listener its own, of a connection the peer's; while connecting, the address as given.
+  // Returns "HOST:PORT" in numbers: a listener's own, or a connection's peer; while connecting, the address as given.
   // Valid until the stream is closed. Errors of a stream begin with it and ": ".
   const char* (*stream_name)(const Link* link, int stream);
 
@@ -91,22 +91,22 @@ struct LinkBackend {
   void (*close_all)(Link* link);
 };
 
-// Divides "HOST:PORT" as resolve() reads it; an IPv6 host loses its brackets. False: `error` says why.
+// Divides "HOST:PORT" as resolve() reads it; an IPv6 host loses its brackets. Returns false with the reason in `error`.
 bool link_parse_address(const char* text, char* host, std::size_t host_bytes, int* port, Error* error);
 
-// Measures time until a deadline by a clock that may be set back: only its steps forward count.
+// Measures time until a deadline by a clock that may be set back: only its forward steps count.
 struct LinkTimer {
   std::uint64_t last_ns = 0, passed_ns = 0, timeout_ns = 0;
 };
 inline LinkTimer link_timer(std::uint64_t now_ns, std::uint64_t timeout_ns) { return {now_ns, 0, timeout_ns}; }
-// Nanoseconds left; 0 when it is over.
+// Nanoseconds left; 0 when time is up.
 inline std::uint64_t link_timer_left(LinkTimer* timer, std::uint64_t now_ns) {
   if (now_ns > timer->last_ns) timer->passed_ns += now_ns - timer->last_ns;
   timer->last_ns = now_ns;
   return timer->passed_ns < timer->timeout_ns ? timer->timeout_ns - timer->passed_ns : 0;
 }
 
-// Time from a clock that may be set back: such a step counts as none. Otherwise the same as the clock.
+// Time from a clock that may be set back; such steps are ignored.
 struct LinkClock {
   std::uint64_t last_ns = 0, lost_ns = 0;
 };

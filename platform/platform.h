@@ -1,5 +1,5 @@
 // The platform contract: a screen, buttons and a clock, as one struct of functions per backend. Standard types only.
-// Of src/ only the rooms from session/ upward include it, and nothing under platform/ includes anything from src/.
+// Only the rooms of src/ from session/ upward include it, and nothing under platform/ includes anything from src/.
 // PORTING.md explains how to write a backend.
 //
 // All functions are called from one thread. After open() a backend takes no memory and has no unbounded waits.
@@ -31,7 +31,7 @@ enum class Button : std::uint8_t {
   traced,
   animation
 };
-constexpr int kPadButtonCount = 12;  // up … select: those of a handheld
+constexpr int kPadButtonCount = 12;  // up … select: a handheld's
 constexpr int kButtonCount = 20;     // with the keys of a desktop keyboard
 
 enum class EventType : std::uint8_t { button_down, button_up, file_drop, quit };
@@ -49,7 +49,7 @@ struct Channel {
 };
 
 // The hardware's screen, before any rotation. Pixels are 16 or 32 bits in the CPU's byte order, or 24 bits with the
-// lowest byte first. Bits of no channel are written as zero, those of alpha as one.
+// lowest byte first. Bits of no channel are written as zero, bits of alpha as one.
 struct ScreenFormat {
   int width = 0, height = 0;  // pixels to draw into
   int bits_per_pixel = 0;
@@ -67,9 +67,9 @@ struct ScreenOptions {
   int width = 320,
       height = 240;         // requested picture, before rotation; a smaller screen reduces it, a larger one centres it
   int rotation = 0;         // 0, 90, 180, 270: degrees clockwise by which the caller rotates the picture on the screen
-  int scale = 0;            // screen pixels per pixel; 0: in a window what fits comfortably, otherwise the most
+  int scale = 0;            // screen pixels per pixel; 0: in a window what fits comfortably, otherwise the maximum
   const char* title = "";   // of a window
-  int bits_per_pixel = 0;   // of a window or of no screen: 16 or 32, as on the screen it stands for; 0: 32
+  int bits_per_pixel = 0;   // of a window or of no screen: 16 or 32, as on the screen it represents; 0: 32
   bool blue_first = false;  // blue in the highest bits instead of red
   bool upright = false;     // of a window: rotates the screen back, as a user would hold the device
   const char* device = nullptr;         // of a framebuffer; null: the default one
@@ -78,7 +78,7 @@ struct ScreenOptions {
   std::size_t memory_bytes = 0;  //   bytes, aligned to 4
 };
 
-// A screen of those pixels: 32 bits as 8-8-8, 16 as 5-6-5.
+// Format of a screen of that size: 32 bits as 8-8-8, 16 as 5-6-5.
 ScreenFormat screen_format(int width, int height, int bits_per_pixel, bool blue_first);
 
 // Most bytes that a back page can take.
@@ -92,17 +92,17 @@ struct Error {
 
 struct Backend {
   const char* name;
-  // What usable() looks for, to tell the user what is missing.
+  // Requirement checked by usable(), to tell the user what is missing.
   const char* needs;
-  // Whether open() might succeed here. Changes nothing.
+  // Returns whether open() might succeed here. Changes nothing.
   bool (*usable)();
-  // Opens screen and buttons. False: `error` says why, and nothing has changed.
+  // Opens screen and buttons. On failure returns false with the reason in `error`, and changes nothing.
   bool (*open)(const ScreenOptions& options, ScreenFormat* format, Error* error);
-  // The page to draw the next frame into; valid until end_frame().
+  // Returns the page to draw the next frame into; valid until end_frame().
   Page (*begin_frame)();
-  // Shows it. Rows [row_begin, row_end) may differ from the frame shown before; the others are assumed to be unchanged.
+  // Shows it. Rows [row_begin, row_end) may differ from the previous frame; the others are assumed to be unchanged.
   void (*end_frame)(int row_begin, int row_end);
-  // Takes the next event, oldest first; false when there is none. Never waits.
+  // Takes the next event, oldest first; returns false if there is none. Never waits.
   bool (*poll)(Event* event);
   std::uint64_t (*now_ns)();  // never runs backwards; its origin is arbitrary
   void (*sleep_ns)(std::uint64_t duration);
@@ -114,7 +114,7 @@ struct Backend {
 extern const Backend* const kBackends[];
 extern const int kBackendCount;
 
-// The backend of that name, or null.
+// Returns the backend of that name, or null.
 const Backend* platform_find(const char* name);
 
 }  // namespace platform

@@ -16,10 +16,10 @@ bool is_output_closed();
 
 // From here on, standard output and error go to the end of that file, which is created if missing.
 bool log_to_file(const char* path, FileError* error);
-// Takes that back: the file has again what it had before, and what is printed goes where it went.
+// Reverts that: the file has its previous content again, and printed text goes to its previous destination.
 void withdraw_log();
 
-// From here on, what is printed is lost, except that the end of it goes to the standard error of old if the program
+// From here on, printed text is lost, except that its end goes to the original standard error if the program
 // aborts.
 void keep_quiet();
 

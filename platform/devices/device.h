@@ -12,11 +12,11 @@ constexpr std::uint16_t kEscape = 1, kBackspace = 14, kTab = 15, kE = 18, kT = 2
                         kRight = 106, kDown = 108;
 }
 
-// Where nobody has measured `slowdown`, it is estimated: clocks per pixel / clock rate, divided by 488 and 515 ns, the
-// cost of the scenes cornell and seesaw at 320 × 240 on one core of an AMD EPYC (README.md), as the geometric mean of
-// both. `make bench-device` counts the clocks, as instructions weighted by class: 39,000 and 56,000 in the armel build,
+// Unless measured, `slowdown` is estimated: clocks per pixel / clock rate, divided by 488 and 515 ns, the cost of
+// the scenes cornell and seesaw at 320 × 240 on one core of an AMD EPYC (README.md), as the geometric mean of both.
+// `make bench-device` counts the clocks, as instructions weighted by class: 39,000 and 56,000 in the armel build,
 // whose floats are software, 7,000 and 10,300 in the armhf build (tests/bench/device/: expected.json,
-// profiles_test.py). The weights are guesses and leave out cache misses; latency and jitter are guesses where no source
+// profiles_test.py). The weights are guesses and ignore cache misses; latency and jitter are guesses unless a source
 // is named.
 //
 // Decoding takes an ARM926 35 clocks a pixel and 900 a byte of code, a Cortex-A7 24 and 870, an x86-64 core 1.1 ns and
@@ -42,7 +42,7 @@ struct Device {
 
   // For emulation on a desktop.
   int core_count;                       // of its CPU; 0: as many as this machine has
-  double slowdown;                      // time per pixel on one of them over that on one x86-64 core, same program
+  double slowdown;                      // time per pixel on one core relative to one x86-64 core, with the same program
   std::uint64_t link_bytes_per_second;  // each way, TCP payload
   std::uint64_t link_latency_ns;        // one way
   std::uint64_t link_jitter_ns;         // maximum addition to the latency
@@ -52,9 +52,9 @@ struct Device {
   // Time to prepare a frame of a moving scene on one core: per triangle and per vertex that move (prepare_cost.h).
   double prepare_triangle_ns, prepare_vertex_ns;
 
-  // For the fronts of split-report: energy beyond that of the device idle.
+  // Energy beyond that of the idle device, for the fronts of split-report.
   double core_watts;       // of one busy core
-  double byte_nanojoules;  // of receiving a byte
+  double byte_nanojoules;  // to receive a byte
 };
 
 constexpr double kRadioNanojoules = 1096;

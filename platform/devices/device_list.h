@@ -13,7 +13,7 @@ namespace platform {
 constexpr Device kDevices[] = {kGp2x, kMiyoo, kMiyooMini, kPiZero, kRg350, kTablet, kDesktop};
 constexpr int kDeviceCount = sizeof kDevices / sizeof kDevices[0];
 
-// The device of that name, or null.
+// Returns the device of that name, or null.
 inline const Device* find_device(const char* name) {
   for (const Device& device : kDevices) {
     const char *a = device.name, *b = name;

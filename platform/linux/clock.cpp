@@ -1,4 +1,4 @@
-// The real system calls, and the clocks: CLOCK_MONOTONIC, which is never set back, and that of a thread.
+// The real system calls, and the clocks: CLOCK_MONOTONIC, which is never set back, and a thread's CPU time.
 #include <errno.h>
 #include <fcntl.h>
 #include <sys/ioctl.h>

@@ -12,7 +12,7 @@
 namespace platform {
 namespace {
 
-// The first ask the program to end, and it may handle them itself. The others end it.
+// The first ones ask the program to end, and it may handle them itself. The others end it.
 constexpr int kSignals[] = {SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGSEGV, SIGBUS,
                             SIGFPE, SIGILL, SIGABRT, SIGSYS,  SIGTRAP};
 constexpr int kSignalCount = sizeof kSignals / sizeof kSignals[0];
@@ -55,7 +55,7 @@ void on_signal(int signal, siginfo_t* info, void* context) {
   } else {
     console_restore();
     sigaction(signal, &previous, nullptr);
-    raise(signal);  // blocked until this handler returns; then the program ends as it would have without it
+    raise(signal);  // blocked until this handler returns; the program then ends as it would have without it
   }
   errno = saved_errno;
 }
@@ -74,12 +74,12 @@ void catch_signals() {
   for (int i = 0; i < kSignalCount; ++i) {
     console.caught[i] = false;
     if (sigaction(kSignals[i], nullptr, &console.previous[i]) != 0) continue;
-    if (console.previous[i].sa_handler == SIG_IGN) continue;  // set on purpose, for instance by nohup
+    if (console.previous[i].sa_handler == SIG_IGN) continue;  // set on purpose, for example by nohup
     console.caught[i] = sigaction(kSignals[i], &action, nullptr) == 0;
   }
 }
 
-// The foreground virtual terminal: our own if it is one, otherwise the visible one.
+// Opens the foreground virtual terminal: our own if it is one, otherwise the visible one.
 int open_terminal(const Driver& driver) {
   const char* const paths[] = {"/dev/tty", "/dev/tty0"};
   for (const char* path : paths) {
@@ -101,7 +101,7 @@ bool console_open(const Driver& driver) {
   console.driver = &driver;
   console.file = file;
   if (driver.ioctl(file, KDGETMODE, &console.mode) != 0) console.mode = KD_TEXT;
-  // Left behind by a program that crashed without restoring; returning to these would keep the console dead.
+  // Left by a program that crashed without restoring; returning to these would keep the console dead.
   if (console.mode == KD_GRAPHICS) console.mode = KD_TEXT;
   if (driver.ioctl(file, KDGKBMODE, &console.keyboard) != 0 || console.keyboard == K_OFF) console.keyboard = K_UNICODE;
   if (!console.exit_registered) console.exit_registered = atexit(console_restore) == 0;

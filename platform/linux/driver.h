@@ -1,5 +1,5 @@
 // All system calls of the Linux backend, as a table: the real ones, or a recorded driver in tests. Return values and
-// errno are those of the calls of the same name.
+// errno are as for the calls of those names.
 #pragma once
 #include <poll.h>
 #include <sys/types.h>
@@ -26,7 +26,7 @@ struct Driver {
 };
 
 extern const Driver kSystemDriver;
-// The backend's; changes only while it is closed. Tests put a recorded one here.
+// The backend's driver; changes only while the backend is closed. Tests substitute a recorded one.
 extern const Driver* linux_driver;
 
 }  // namespace platform

@@ -10,7 +10,7 @@
 namespace platform {
 namespace {
 
-// A keyboard as a gamepad: arrows, X Z S A Q W, Enter, right Shift. The same as in the SDL2 window.
+// A keyboard as a gamepad: arrows, X Z S A Q W, Enter, right Shift; as in the SDL2 window.
 constexpr std::uint16_t kKeyboard[kPadButtonCount] = {KEY_UP, KEY_DOWN, KEY_LEFT, KEY_RIGHT, KEY_X,     KEY_Z,
                                                       KEY_S,  KEY_A,    KEY_Q,    KEY_W,     KEY_ENTER, KEY_RIGHTSHIFT};
 
@@ -18,7 +18,7 @@ struct KeyButton {
   std::uint16_t code;
   Button button;
 };
-// Accepted whatever the device's own keys are.
+// Accepted in addition to the device's own keys.
 constexpr KeyButton kMoreKeys[] = {
     {BTN_DPAD_UP, Button::up},
     {BTN_DPAD_DOWN, Button::down},
@@ -61,7 +61,7 @@ void set_button(InputQueue* queue, Button button, bool down) {
   if (((queue->held & bit) != 0) == down) return;
   queue->held ^= bit;
   push(queue, down ? EventType::button_down : EventType::button_up, button);
-  // Handhelds have no key for leaving: start and select together do it.
+  // Handhelds have no key to quit: start and select together do it.
   constexpr std::uint32_t kLeave = 1u << static_cast<int>(Button::start) | 1u << static_cast<int>(Button::select);
   if (down && (bit & kLeave) && (queue->held & kLeave) == kLeave) push(queue, EventType::quit, button);
 }
@@ -97,7 +97,7 @@ void take_axis(InputQueue* queue, Input* input, std::uint16_t code, int value) {
   }
 }
 
-constexpr std::uint64_t kLookNs = 1'000'000'000;  // chosen: a pad that comes later works at once; 32 calls cost little
+constexpr std::uint64_t kLookNs = 1'000'000'000;  // chosen: a pad plugged in later works at once; 32 calls cost little
 
 void find_axes(const Driver& driver, Input* input) {
   for (int i = 0; i < 4; ++i) {
@@ -110,7 +110,7 @@ void find_axes(const Driver& driver, Input* input) {
   }
 }
 
-// Opens the devices that are not open yet. One that failed is left alone until it has been unplugged.
+// Opens the devices that are not open yet. A failed one is ignored until it has been unplugged.
 void open_inputs(InputQueue* queue) {
   static_assert(kInputCountMax <= 32, "one bit each");
   queue->looked_ns = queue->driver->now_ns();
@@ -171,7 +171,7 @@ bool input_poll(InputQueue* queue, Event* event) {
     pollfd files[kInputCountMax];
     for (int i = 0; i < queue->input_count; ++i) files[i] = {queue->inputs[i].file, POLLIN, 0};
     if (queue->driver->poll(files, queue->input_count) <= 0) break;
-    // Backwards, because a device that is dropped is replaced by one already read.
+    // Backwards, because the last one replaces a dropped device, and that has been read already.
     for (int i = queue->input_count - 1; i >= 0 && queue->count <= kButtonCount - 3; --i)
       if (files[i].revents) read_input(queue, i);
   }

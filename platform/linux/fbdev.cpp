@@ -11,8 +11,8 @@
 namespace platform {
 namespace {
 
-// Without a working vsync wait, the page shown before is not drawn into until this long after the flip: a frame at
-// 50 Hz.
+// Without a working vsync wait, the page shown before is not drawn into until this long after the flip: a frame at 50
+// Hz.
 constexpr std::uint64_t kFlipNs = 20'000'000;
 
 bool get_geometry(Framebuffer* fb, fb_fix_screeninfo* fixed) {
@@ -40,7 +40,7 @@ bool field_usable(const fb_bitfield& field, std::uint32_t pixel_bits) {
   return field.length >= 1 && field.length <= 10 && field.msb_right == 0 && field.offset <= pixel_bits - field.length;
 }
 
-// Null if the geometry is supported, otherwise what is wrong with it.
+// Returns null if the geometry is supported, otherwise what is wrong with it.
 const char* geometry_error(const fb_var_screeninfo& mode, const fb_fix_screeninfo& fixed) {
   std::uint32_t bits = mode.bits_per_pixel;
   if (bits != 16 && bits != 24 && bits != 32) return "its depth is not 16, 24 or 32 bits per pixel";
@@ -58,7 +58,7 @@ const char* geometry_error(const fb_var_screeninfo& mode, const fb_fix_screeninf
   return nullptr;
 }
 
-// Whether there are two pages that the driver exchanges on request.
+// Returns whether there are two pages that the driver exchanges on request.
 bool can_flip(Framebuffer* fb, const fb_fix_screeninfo& fixed, std::size_t map_offset) {
   fb_var_screeninfo* mode = &fb->mode;
   if (fixed.ypanstep == 0 || mode->yres % fixed.ypanstep != 0) return false;
@@ -101,7 +101,7 @@ void write_row(const Framebuffer& fb, const unsigned char* from, unsigned char* 
   }
 }
 
-// Rows of the picture to a page that is shown. Each is written `scale` times: reading the screen's memory back is slow.
+// Copies rows of the picture to a visible page. Each is written `scale` times: reading the screen back is slow.
 void copy_rows(Framebuffer* fb, const unsigned char* from, int from_line_bytes, unsigned char* to, int row_begin,
                int row_end) {
   PLATFORM_CHECK(row_begin >= 0 && row_end <= fb->height);
@@ -129,7 +129,7 @@ void draw_hidden_page(Framebuffer* fb, int row_begin, int row_end) {
   fb->stale_begin = row_begin, fb->stale_end = row_end;
 }
 
-// The most screen pixels per pixel that fit, or fewer if asked for.
+// Returns the most screen pixels per pixel that fit, or fewer if requested.
 int fitting_scale(const Framebuffer& fb, int screen_width, int screen_height, int wanted) {
   int most = screen_width / fb.width < screen_height / fb.height ? screen_width / fb.width : screen_height / fb.height;
   PLATFORM_CHECK_GE(most, 1);

@@ -42,7 +42,7 @@ int open_regular(const char* path, struct stat* info, FileError* error) {
 
 bool open_reader(const char* path, FileReader* reader, FileError* error) {
   PLATFORM_CHECK(path != nullptr && error != nullptr);
-  PLATFORM_CHECK_LT(reader->descriptor, 0);  // what was read before is closed
+  PLATFORM_CHECK_LT(reader->descriptor, 0);  // the previous file is closed
   struct stat info;
   int descriptor = open_regular(path, &info, error);
   if (descriptor < 0) return false;

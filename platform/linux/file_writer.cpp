@@ -1,4 +1,4 @@
-// Writing files: the half of file.h that replaces files as a whole.
+// Writes files: the part of file.h that replaces files as a whole.
 #include <errno.h>
 #include <fcntl.h>
 #include <stdio.h>
@@ -18,7 +18,7 @@ namespace {
 
 constexpr int kLinkCountMax = 40;       // in a row, as in Linux
 constexpr int kPartCountMax = 100;      // names to try; files of killed programs may be in the way
-constexpr size_t kPartStemBytes = 200;  // of the file's name in its part's: names have at most 255 bytes
+constexpr size_t kPartStemBytes = 200;  // bytes of the file's name in its part's name: names have at most 255 bytes
 
 int data_output = STDOUT_FILENO;  // what "-" names
 
@@ -35,8 +35,8 @@ bool fail_as_too_long(FileError* error) {
 
 bool starts_with(const char* text, const char* start) { return strncmp(text, start, strlen(start)) == 0; }
 
-// The descriptor of this process that a path names, or -1. Opening it again would truncate or overwrite data already
-// written to it.
+// Returns the descriptor of this process that a path names, or -1. Opening it again would truncate or overwrite data
+// already written to it.
 int descriptor_named(const char* path) {
   if (strcmp(path, "/dev/stdout") == 0) return STDOUT_FILENO;
   if (strcmp(path, "/dev/stderr") == 0) return STDERR_FILENO;
@@ -49,7 +49,7 @@ int descriptor_named(const char* path) {
   return -1;
 }
 
-// Length of a path's folder, including its last slash; 0: no folder.
+// Returns the length of a path's folder, including its last slash; 0: no folder.
 size_t folder_length(const char* path) {
   const char* slash = strrchr(path, '/');
   return slash ? static_cast<size_t>(slash - path) + 1 : 0;
@@ -74,7 +74,7 @@ bool follow_links(const char* path, char* target, FileError* error) {
   return descriptor_named(target) >= 0 || fail(error, "cannot be written", ELOOP);
 }
 
-// What a path to be written refers to.
+// The target of a path to be written.
 struct Destination {
   char path[kWriterPathBytes];  // with links followed
   int descriptor = -1;          // of this process, to write to
@@ -90,7 +90,7 @@ bool find_destination(const char* path, Destination* d, FileError* error) {
   }
   if (!follow_links(path, d->path, error)) return false;
   d->descriptor = descriptor_named(d->path);
-  // A link to a pipe can only be followed by the system.
+  // Only the system can follow a link to a pipe.
   d->is_there = stat(path, &d->info) == 0;
   if (d->descriptor >= 0) {
     d->is_direct = true;
@@ -105,7 +105,7 @@ bool find_destination(const char* path, Destination* d, FileError* error) {
   return faccessat(AT_FDCWD, path, W_OK, AT_EACCESS) == 0 || fail(error, "cannot be written", errno);
 }
 
-// A new file next to the one to replace, with an unused name: not another program's part, and not a link planted there.
+// Opens a new file next to the one to replace, with an unused name: not another program's part, nor a planted link.
 bool open_part(const Destination& d, FileWriter* writer, FileError* error) {
   size_t folder = folder_length(d.path);
   size_t name = strlen(d.path) - folder, stem = name < kPartStemBytes ? name : kPartStemBytes;
@@ -131,7 +131,7 @@ bool keep_permissions(const Destination& d, int part) {
   return fchmod(part, mode) == 0;
 }
 
-// Some file systems cannot, and report it.
+// Some file systems cannot do this and report it.
 bool bring_to_disk(int descriptor) {
   return fsync(descriptor) == 0 || errno == EINVAL || errno == ENOSYS || errno == ENOTSUP;
 }
@@ -150,7 +150,7 @@ void bring_folder_to_disk(const char* path) {
 
 bool (*is_stopped)() = nullptr;
 
-// Opens what is not a regular file. A pipe waits for its reader; open() would wait on after Ctrl-C.
+// Opens something other than a regular file. A pipe waits for its reader; open() would keep waiting after Ctrl-C.
 int open_direct(const char* path) {
   constexpr struct timespec kLook = {0, 20'000'000};
   for (;;) {
@@ -181,7 +181,7 @@ void stop_waiting_if(bool (*stopped)()) { is_stopped = stopped; }
 
 bool open_writer(const char* path, FileWriter* writer, FileError* error) {
   PLATFORM_CHECK(path != nullptr && error != nullptr);
-  PLATFORM_CHECK_LT(writer->descriptor, 0);  // what was written before is closed
+  PLATFORM_CHECK_LT(writer->descriptor, 0);  // the previous file is closed
   *writer = FileWriter();
   if (strcmp(path, "-") == 0) {
     writer->descriptor = data_output;
@@ -224,7 +224,7 @@ bool open_growing_writer(const char* path, const void* bytes, std::size_t byte_c
     return false;
   }
   bring_folder_to_disk(path);
-  writer->part[0] = 0;  // it has its name: from here on it is written directly
+  writer->part[0] = 0;  // it has its final name: from here on it is written directly
   return true;
 }
 

@@ -10,7 +10,7 @@
 namespace platform {
 namespace {
 
-// The number behind `name` in /proc/meminfo, in bytes; 0 if it is not there.
+// Returns the number after `name` in /proc/meminfo, in bytes; 0 if missing.
 std::size_t read_entry(const char* text, const char* name) {
   const char* at = strstr(text, name);
   unsigned long long kilobytes = at ? strtoull(at + strlen(name), nullptr, 10) : 0;
@@ -34,7 +34,7 @@ std::size_t free_memory() {
   if (count <= 0) return 0;
   text[count] = 0;
   std::size_t bytes = read_entry(text, "MemAvailable:");
-  // Linux before 3.14 does not estimate it.
+  // Linux before 3.14 has no estimate.
   if (bytes == 0) bytes = read_entry(text, "MemFree:") + read_entry(text, "\nCached:");
   std::size_t swap = read_entry(text, "SwapFree:");
   return bytes > SIZE_MAX - swap ? SIZE_MAX : bytes + swap;

@@ -31,7 +31,7 @@ constexpr int kNotStarted = 127;  // as in shells
   _exit(kNotStarted);
 }
 
-// The same for a program that is fed.
+// become() for a program fed through a pipe.
 [[noreturn]] void become_fed(const char* path, const char* const* words, int input, const char* errors, pid_t parent) {
   int nothing = open("/dev/null", O_WRONLY), told = open(errors, O_WRONLY | O_CREAT | O_TRUNC | O_NOCTTY, 0600);
   bool ok = nothing >= 0 && told >= 0 && dup2(input, 0) >= 0 && dup2(nothing, 1) >= 0 && dup2(told, 2) >= 0;
@@ -73,7 +73,7 @@ bool find_program(const char* name, char* path, std::size_t path_bytes) {
 
 bool start_program(const char* path, const char* const* words, const char* folder, Process* process, FileError* error) {
   PLATFORM_CHECK(path != nullptr && words != nullptr && words[0] != nullptr);
-  PLATFORM_CHECK_EQ(process->id, 0);  // the one before has been seen to end
+  PLATFORM_CHECK_EQ(process->id, 0);  // the previous one has been seen to end
   pid_t parent = getpid(), child = fork();
   if (child == 0) become(path, words, folder, parent);
   process->id = child > 0 ? child : 0;
@@ -84,7 +84,7 @@ bool start_program(const char* path, const char* const* words, const char* folde
 bool start_fed_program(const char* path, const char* const* words, const char* errors, Process* process,
                        FileError* error) {
   PLATFORM_CHECK(path != nullptr && words != nullptr && words[0] != nullptr && errors != nullptr);
-  PLATFORM_CHECK_EQ(process->id, 0);  // the one before has been seen to end
+  PLATFORM_CHECK_EQ(process->id, 0);  // the previous one has been seen to end
   PLATFORM_CHECK_LT(process->input, 0);
   int ends[2];
   if (pipe2(ends, O_CLOEXEC) != 0) {

@@ -17,13 +17,13 @@ namespace {
 // block.
 constexpr size_t kLineBytesMax = 4096;
 
-// Where a program that logs to a file printed before, and that file's size then.
+// Previous destinations of a program that logs to a file, and that file's size then.
 int printed_to = -1, complained_to = -1;
 off_t logged_before = 0;
 
 int duplicate(int descriptor) { return fcntl(descriptor, F_DUPFD_CLOEXEC, STDERR_FILENO + 1); }
 
-// Standard error of old, of a program that keeps quiet.
+// The original standard error of a program that keeps quiet.
 int loud_error = -1;
 
 extern "C" void on_abort(int number) {
@@ -56,7 +56,7 @@ bool is_output_closed() {
 
 bool log_to_file(const char* path, FileError* error) {
   PLATFORM_CHECK(path != nullptr && error != nullptr);
-  // Not waiting: whatever reads a pipe would have to be there before anything is shown.
+  // Does not wait: a pipe would otherwise need its reader before anything is shown.
   int file = open(path, O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC | O_NOCTTY | O_NONBLOCK, 0666);
   if (file < 0 && errno == ENXIO) {
     snprintf(error->text, sizeof error->text, "is a pipe that nobody reads: start its reader first");
@@ -75,7 +75,7 @@ bool log_to_file(const char* path, FileError* error) {
 void withdraw_log() {
   PLATFORM_CHECK(printed_to >= 0);
   fflush(nullptr);
-  // Pipes and devices keep what they got.
+  // Pipes and devices keep what they have received.
   if (logged_before >= 0 && ftruncate(STDERR_FILENO, logged_before) != 0) errno = 0;
   dup2(printed_to, STDOUT_FILENO);
   dup2(complained_to, STDERR_FILENO);

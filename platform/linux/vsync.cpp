@@ -67,7 +67,7 @@ bool start_helper() {
   return waiter.has_thread;
 }
 
-// One wait: as long as the driver takes, but at most the timeout.
+// Waits once: as long as the driver takes, but at most the timeout.
 VsyncKind wait_bounded() {
   timespec deadline;
   clock_gettime(CLOCK_MONOTONIC, &deadline);

@@ -31,7 +31,7 @@ int value_of(char digit) {
   return digit >= 'A' && digit <= 'F' ? digit - 'A' + 10 : -1;
 }
 
-// All bytes up to the end, at most `byte_count_max`; -1: errno says why.
+// Reads all bytes up to the end, at most `byte_count_max`; returns -1 with errno on failure.
 ssize_t read_whole(int file, char* bytes, std::size_t byte_count_max) {
   std::size_t count = 0;
   while (count < byte_count_max) {
@@ -76,14 +76,14 @@ bool create_key_file(const char* path, const SharedKey& key, FileError* error) {
   PLATFORM_CHECK(path != nullptr && error != nullptr);
   int file = ::open(path, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, S_IRUSR | S_IWUSR);
   if (file < 0 && errno == EEXIST)
-    return refuse(error, "there is a file of that name: remove it first, or choose another with -o");
+    return refuse(error, "a file of that name exists: remove it first, or choose another with -o");
   if (file < 0) return refuse(error, "%s", strerror(errno));
   char line[kLineBytes + 1];
   memcpy(line, kPrefix, kPrefixBytes);
   for (std::size_t i = 0; i < SharedKey::kByteCount; ++i)
     snprintf(line + kPrefixBytes + 2 * i, 3, "%02x", key.bytes[i]);
   line[kLineBytes - 1] = '\n';
-  // Whatever the umask, which may have taken even the owner's rights.
+  // Regardless of the umask, which may have removed even the owner's rights.
   bool ok = ::fchmod(file, S_IRUSR | S_IWUSR) == 0 && write_whole(file, line, kLineBytes);
   int number = errno;
   wipe(line, sizeof line);

@@ -1,5 +1,5 @@
-// The key that a device and its render servers share: 256 random bits in a file of one line, readable by its owner
-// alone,
+// The key shared by a device and its render servers: 256 random bits in a file of one line, readable only by its
+// owner,
 //
 //     pocketray-key-1:<64 hexadecimal digits>
 #pragma once
@@ -14,12 +14,12 @@ struct SharedKey {
   unsigned char bytes[kByteCount] = {};
 };
 
-// Writes a key to a new file of mode 0600. Fails if there is one by that name, whatever it is.
+// Writes a key to a new file of mode 0600. Fails if anything of that name exists.
 bool create_key_file(const char* path, const SharedKey& key, FileError* error);
-// Fails if others than the owner may do anything with the file, or if it is not such a file.
+// Fails if others than the owner have any access to the file, or if it is not a key file.
 bool read_key_file(const char* path, SharedKey* key, FileError* error);
 
-// Overwrites secret bytes before their memory goes to something else; not optimised away.
+// Overwrites secret bytes before their memory is reused; not optimised away.
 void wipe(void* bytes, std::size_t byte_count);
 
 }  // namespace platform

@@ -19,8 +19,8 @@ struct LinkLine {
   std::uint32_t lost_per_million = 0;  // pieces lost and repeated
 };
 
-// When bytes sent now arrive, on a line that is busy until *free_ns, which is advanced. `random` is the state of
-// random_u64().
+// Returns when bytes sent now arrive, on a line that is busy until *free_ns, which is advanced. `random` is the state
+// of random_u64().
 std::uint64_t line_arrival_ns(const LinkLine& line, std::size_t byte_count, std::uint64_t now_ns,
                               std::uint64_t* free_ns, std::uint64_t* random);
 std::uint64_t random_u64(std::uint64_t* state);
@@ -29,7 +29,7 @@ struct LinkPiece {
   std::uint64_t arrival_ns;  // at the reader: after every piece before it
   std::size_t byte_count;
   std::uint64_t own_ns;  // at the other end of the line
-  bool lost;             // repeated; own_ns is the repeated one's
+  bool lost;             // repeated; own_ns is then that of the repeated piece
 };
 
 struct LinkPipe {
@@ -40,28 +40,28 @@ struct LinkPipe {
   std::uint64_t byte_index;        // of the next byte to be sent
   std::uint64_t arrival_last_ns;   // nothing overtakes
   std::uint64_t free_ns;           // until when its own line is busy, if it has one
-  std::uint64_t end_ns, reset_ns;  // when the reader learns of them; kNever: not at all
+  std::uint64_t end_ns, reset_ns;  // when the reader learns of them; kNever: never
   std::uint32_t faults_struck;     // one bit per fault
   bool silent, trickles;
 };
 
-// Bytes of memory for a pipe of that capacity; a pipe in that memory, aligned to 8, which still must be reset. *memory
-// is advanced.
+// pipe_need(): bytes of memory for a pipe of that capacity. make_pipe(): a pipe in that memory, aligned to 8, which
+// still must be reset; *memory is advanced.
 std::size_t pipe_need(std::size_t capacity);
 void place_pipe(LinkPipe* pipe, std::size_t capacity, unsigned char** memory);
 // Empties a pipe, keeping its memory.
 void reset_pipe(LinkPipe* pipe);
-// Bytes that one more piece may have; 0: no room.
+// Most bytes for one more piece; 0: no room.
 std::size_t pipe_room(const LinkPipe& pipe);
 // Sends one piece of at most pipe_room() bytes; `flip` is XORed into its first byte.
 void push_piece(LinkPipe* pipe, const unsigned char* bytes, std::size_t byte_count, unsigned char flip,
                 std::uint64_t arrival_ns);
-// Loses the piece pushed last, or not: call after each push_piece(). As with TCP, a lost piece is repeated and those
-// after it wait: a round trip after the third later piece [RFC 5681, sec. 3.2], otherwise two round trips and 10 ms
-// after the last piece sent [RFC 8985, sec. 7.2] or, if it is the only one on its way, 200 ms more [Linux:
-// tcp_rto_min]. A piece repeated by time may be lost again.
+// Decides whether the last pushed piece is lost: call after each push_piece(). As with TCP, a lost piece is repeated
+// and later ones wait: a round trip after the third later piece [RFC 5681, sec. 3.2], otherwise two round trips and 10
+// ms after the last piece sent [RFC 8985, sec. 7.2] or, if it is the only one in transit, 200 ms more [Linux:
+// tcp_rto_min]. A piece repeated after a time-out may be lost again.
 void lose_piece(const LinkLine& line, LinkPipe* pipe, std::uint64_t* random);
-// The contiguous bytes that have arrived by now, at most one piece, and their address.
+// Returns the contiguous bytes that have arrived by now, at most one piece, and their address.
 std::size_t due_bytes(const LinkPipe& pipe, std::uint64_t now_ns, const unsigned char** bytes);
 // Removes at most that many of them.
 void drop_bytes(LinkPipe* pipe, std::size_t byte_count);

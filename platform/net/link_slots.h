@@ -1,5 +1,5 @@
-// How the backends number their streams: the index of a slot, and the slot's generation, which exposes stale streams. A
-// slot has a `phase`, which is `unused` if it is free, and a `generation`.
+// Numbers of the backends' streams: the index of a slot, and the slot's generation, which exposes stale streams. A slot
+// has a `phase`, which is `unused` if it is free, and a `generation`.
 #pragma once
 #include <cstdio>
 
@@ -14,7 +14,7 @@ int stream_number(const Slot* slots, const Slot* slot) {
   return slot->generation * kLinkStreamsMax + static_cast<int>(slot - slots);
 }
 
-// Null: stale, or never assigned.
+// Returns null for a stale stream, or one never assigned.
 template <typename Slot>
 Slot* slot_at(Slot* slots, int slot_count, int stream) {
   if (stream < 0 || stream % kLinkStreamsMax >= slot_count) return nullptr;
@@ -23,7 +23,7 @@ Slot* slot_at(Slot* slots, int slot_count, int stream) {
   return used && slot->generation == stream / kLinkStreamsMax ? slot : nullptr;
 }
 
-// A free slot with its generation incremented; null: `error` says that there is none.
+// Returns a free slot with its generation incremented; null if there is none, as `error` says.
 template <typename Slot>
 Slot* free_slot(Slot* slots, int slot_count, Error* error) {
   for (int i = 0; i < slot_count; ++i)

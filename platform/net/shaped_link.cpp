@@ -9,7 +9,7 @@
 namespace platform {
 namespace {
 
-// `passed`: a listener or an accepted peer, handled by the inner link alone. `closing`: written data still has to
+// `passed`: a listener or an accepted peer, handled only by the inner link. `closing`: written data still has to
 // cross.
 enum class Phase : std::uint8_t { unused, passed, connecting, connected, closing, broken };
 
@@ -110,7 +110,7 @@ void free_closing(ShapedLink* link, Slot* slot) {
   slot->phase = Phase::unused;
 }
 
-// Everything that can happen to a stream by itself.
+// Applies everything that can happen to a stream by itself.
 void move(ShapedLink* link, Slot* slot) {
   if (slot->phase == Phase::connecting && slot->outcome == LinkResult::later)
     slot->outcome = net(link).connected(link->inner, slot->inner, &slot->error);
@@ -126,7 +126,7 @@ LinkResult fail(ShapedLink* link, Slot* slot, Error* error) {
   return LinkResult::failed;
 }
 
-// A free slot for a stream; if there is none, one that is closing gives way.
+// Returns a free slot for a stream; if there is none, one that is closing gives way.
 Slot* take_slot(ShapedLink* link, int inner, Phase phase, Error* error) {
   Slot* slot = free_slot(link->slots, link->slot_count, error);
   for (int i = 0; i < link->slot_count && !slot; ++i) {
@@ -160,7 +160,7 @@ int connect(Link* base, const LinkAddress& address, std::uint64_t timeout_ns, Er
   return stream_number(link->slots, slot);
 }
 
-// Progress of a connection being made.
+// Advances connecting.
 LinkResult progress(ShapedLink* link, Slot* slot, Error* error) {
   if (slot->phase == Phase::connected) return LinkResult::done;
   if (slot->phase == Phase::broken) return fail(link, slot, error);
@@ -261,7 +261,7 @@ LinkResult write(Link* base, int stream, const void* bytes, std::size_t byte_cou
   return *byte_count > 0 ? LinkResult::done : LinkResult::later;
 }
 
-// What the stream of a wait can do now, and when it could do more by itself; kNever: only the inner link can tell.
+// Sets what a wait's stream can do now; returns when it can do more, kNever if only the inner link can tell.
 std::uint64_t look(ShapedLink* link, Slot* slot, LinkWait* wait) {
   Error error;
   LinkResult state = slot ? progress(link, slot, &error) : LinkResult::failed;
@@ -273,7 +273,7 @@ std::uint64_t look(ShapedLink* link, Slot* slot, LinkWait* wait) {
   return wait->want_read ? news_ns : failed ? kNever : slot->in.reset_ns;
 }
 
-// What to ask the inner link about a stream that is not `passed`.
+// The wait on the inner link for a stream that is not `passed`.
 LinkWait ask(const Slot& slot) {
   LinkWait wait;
   bool open = slot.phase == Phase::connected && !slot.lost;
@@ -284,7 +284,7 @@ LinkWait ask(const Slot& slot) {
   return wait;
 }
 
-// One round of poll(): what is ready now or after the inner link has waited for at most `wait_ns`.
+// One round of poll(): finds what is ready now or after the inner link has waited for at most `wait_ns`.
 int poll_once(ShapedLink* link, LinkWait* waits, int wait_count, std::uint64_t wait_ns) {
   std::uint64_t next_ns = link->clock_ns + wait_ns;
   int ready_count = 0, inner_count = 0;

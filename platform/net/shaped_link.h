@@ -14,7 +14,7 @@ struct ShapedLinkSettings {
   LinkLine line;           // bytes per second of each direction
   std::uint64_t seed = 1;  // for jitter and losses
 };
-// The wireless link of a device.
+// Settings for the wireless link of a device.
 ShapedLinkSettings shaped_link_settings(const Device& device);
 
 // Most bytes in transit in one direction of a connection, beyond which the sender waits: the content of the line over
@@ -23,10 +23,10 @@ std::size_t shaped_pipe_bytes(const LinkLine& line);
 
 std::size_t shaped_link_need(int stream_count_max, const ShapedLinkSettings& settings);
 // `inner` must have room for as many streams; the caller keeps it, it must outlive this link, and others may share it.
-// The clock is the inner one without its steps backwards. `options.now_ns` is ignored.
+// The clock is the inner one without its backward steps. `options.now_ns` is ignored.
 Link* shaped_link_open(Link* inner, const LinkOptions& options, const ShapedLinkSettings& settings, Error* error);
 
-// The functions of such a link over links of that kind, except need() and open(), which are the ones above.
+// Functions of such a link over links of that kind, except need() and open(), which are above.
 LinkBackend shaped_link_backend(const LinkBackend& inner);
 
 }  // namespace platform

@@ -22,7 +22,7 @@ enum class Phase : std::uint8_t { unused, listening, connecting, connected, brok
 struct Slot {
   Phase phase;
   int file;          // -1: none
-  int spare;         // of a listener: a descriptor to give up when there are none left; otherwise -1
+  int spare;         // of a listener: a descriptor to give up when none are left; otherwise -1
   int generation;    // counts the streams in this slot, which exposes stale ones
   int place;         // while connecting: the place of the address being tried
   int error_number;  // of the first place that failed; when broken: the reason
@@ -64,7 +64,7 @@ void close_file(Slot* slot) {
   slot->file = slot->spare = -1;
 }
 
-// What went wrong with a connection, and how to mend it.
+// Describes a failed connection and how to mend it.
 void tell(const char* peer, int number, Error* error) {
   const char* what = nullptr;
   switch (number) {
@@ -161,7 +161,7 @@ bool is_own_peer(int file) {
          own_bytes == peer_bytes && memcmp(&own, &peer, own_bytes) == 0;
 }
 
-// Tries the places of the address, from slot->place on, until one does not fail at once.
+// Tries the places of the address from slot->place on until one does not fail at once.
 void try_places(Slot* slot) {
   for (; slot->place < slot->address.place_count; ++slot->place) {
     SocketAddress at = socket_address(slot->address, slot->place);
@@ -192,7 +192,7 @@ int connect(Link* base, const LinkAddress& address, std::uint64_t timeout_ns, Er
   return -1;
 }
 
-// Progress of a connection being made.
+// Advances connecting.
 LinkResult progress(TcpLink* link, Slot* slot, Error* error) {
   if (slot->phase == Phase::connected) return LinkResult::done;
   if (slot->phase == Phase::listening) return stale_stream(error);
@@ -313,7 +313,7 @@ LinkResult write(Link* base, int stream, const void* bytes, std::size_t byte_cou
 }
 
 // Polls the first `file_count` of link->files. If the system cannot tell, for lack of memory or because the limit on
-// open files was lowered, everything counts as ready after a pause: whoever tries finds out.
+// open files was lowered, everything counts as ready after a pause: the next call on it finds out.
 int ask_system(TcpLink* link, int file_count, std::uint64_t wait_ns) {
   PLATFORM_CHECK(file_count >= 0 && file_count <= link->slot_count);
   auto time_of = [](std::uint64_t ns) {
@@ -328,11 +328,11 @@ int ask_system(TcpLink* link, int file_count, std::uint64_t wait_ns) {
   return file_count;
 }
 
-// One round of poll(): what is ready after the system has waited for at most `wait_ns`. Adds time waited in vain to
-// `waited_ns`.
+// One round of poll(): finds what is ready after the system has waited for at most `wait_ns`. Adds time waited in vain
+// to `waited_ns`.
 int poll_once(TcpLink* link, LinkWait* waits, int wait_count, std::uint64_t wait_ns, std::uint64_t* waited_ns) {
   // 1. Ask the system only about open files, since it takes no more entries than files may be open. A connection that
-  // fails in time is handled when its time is over.
+  // fails in time is handled when its time is up.
   int file_count = 0;
   for (int i = 0; i < wait_count; ++i) {
     Slot* slot = slot_of(link, waits[i].stream);

@@ -1,5 +1,5 @@
-// The null backend: a screen in memory, buttons from a script and a clock that only runs on demand. It is the template
-// for a port and the harness of the tests: the same script always gives the same events at the same times.
+// The null backend: a screen in memory, buttons from a script and a clock that only advances on demand. It is the
+// template for a port and the harness of the tests: a script always gives equal events at equal times.
 #pragma once
 #include "platform/platform.h"
 
@@ -10,7 +10,7 @@ extern const Backend kNullBackend;
 struct NullSettings {
   ScreenFormat format;         // bits_per_pixel 0: as requested
   int line_padding_bytes = 0;  // after each row of the page
-  void* screen = nullptr;      // receives a copy of what is shown, rows of line_bytes; null: nowhere
+  void* screen = nullptr;      // receives a copy of the shown picture, rows of line_bytes; null: none
   std::size_t screen_bytes = 0;
   const Event* script = nullptr;  // in order of time_ns
   int script_count = 0;

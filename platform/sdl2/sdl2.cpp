@@ -18,7 +18,7 @@ struct KeyButton {
   SDL_Scancode key;
   Button button;
 };
-// By position on the keyboard, whatever is printed there. The same as evdev's.
+// By position on the keyboard, whatever is printed there; as in evdev.
 constexpr KeyButton kKeys[] = {
     {SDL_SCANCODE_UP, Button::up},
     {SDL_SCANCODE_DOWN, Button::down},
@@ -121,7 +121,7 @@ bool open_window(const ScreenOptions& options, const char** what) {
   SDL_SetHint(SDL_HINT_RENDER_SCALE_QUALITY, "nearest");
   *what = "start SDL";
   if (SDL_Init(SDL_INIT_VIDEO) != 0) return false;
-  // Where no display answers, SDL draws for nobody, which is for those who ask for it.
+  // Without a display, SDL draws invisibly, which is only for those who ask for it.
   const char* driver = SDL_GetCurrentVideoDriver();
   if (!is_set("SDL_VIDEODRIVER") && driver && (!std::strcmp(driver, "offscreen") || !std::strcmp(driver, "dummy"))) {
     SDL_SetError("no display answers at DISPLAY or WAYLAND_DISPLAY");

@@ -11,7 +11,7 @@ extern const AccelInfo kBvhAccel, kCompactAccel, kGridAccel, kBruteAccel;
 
 inline const AccelInfo* const kAccelList[] = {&kBvhAccel, &kCompactAccel, &kGridAccel, &kBruteAccel};
 
-// The accelerator that baked the data, or null.
+// Returns the accelerator that baked the data, or null.
 inline const AccelInfo* accel_of(Array<const std::uint8_t> data) {
   std::uint32_t magic = 0;
   if (data.count >= sizeof magic) std::memcpy(&magic, data.data, sizeof magic);

@@ -5,7 +5,7 @@
 
 namespace pocketray {
 
-// AccelInfo::largest() by asking for every triangle.
+// AccelInfo::largest() by querying every triangle.
 inline float largest_of_all(const Accel& accel, const TriangleQuery& query) {
   float most = 0;
   for (std::uint32_t i = 0; i < accel.triangles.count; ++i) {

@@ -54,14 +54,14 @@ inline void make_box_ray(Float4 origin, Float4 d, Float4 low, Float4 high, BoxRa
   r->rows = &kSlabRows[signs(d) & 7];
 }
 
-// The distance up to which boxes must be entered to find all hits up to t.
+// Distance up to which boxes must be entered to find all hits up to t.
 inline float box_limit(int exponent, float t) {
   constexpr float kLeast = std::numeric_limits<float>::denorm_min();  // t may be rounded by half of this
   return __builtin_expect(exponent == 0, 1) ? t : std::ldexp(t + kLeast, exponent) + std::numeric_limits<float>::min();
 }
 
-// The children without a hit up to `limit`; `enter` receives the distance at which each is entered, never negative.
-// A distance of −0 counts as negative: no hit lies there.
+// Mask of the children without a hit up to `limit`; `enter` receives the distance at which each is entered, never
+// negative. A distance of −0 counts as negative: no hit lies there.
 inline Mask4 miss_boxes(const BoxRay& ray, const BvhNode& node, Float4 limit, Float4* enter) {
   const char* bounds = reinterpret_cast<const char*>(node.bounds);
   const SlabRows& rows = *ray.rows;

@@ -87,7 +87,7 @@ constexpr std::uint64_t bvh_bytes(std::uint64_t node_count, std::uint64_t leaf_c
                                   std::uint64_t leaf_bytes = sizeof(TriangleBlock)) {
   return sizeof(BvhHeader) + sizeof(BvhNode) * node_count + leaf_bytes * leaf_count;
 }
-// A leaf of a hierarchy of that kind.
+// Returns a leaf of a hierarchy of this kind.
 inline const std::uint8_t* leaf_at(const LeafKind& kind, const std::uint8_t* data, std::size_t index) {
   std::size_t node_count = reinterpret_cast<const BvhHeader*>(data)->node_count;
   return data + bvh_bytes(node_count, index, kind.bytes);
@@ -113,7 +113,7 @@ inline Box node_box(const BvhNode& node) {
   return merge(merge(child_box(node, 0), child_box(node, 1)), merge(child_box(node, 2), child_box(node, 3)));
 }
 
-// The functions of AccelInfo for either kind.
+// AccelInfo's functions for either kind.
 std::size_t bvh_need(const LeafKind& kind, std::uint32_t triangle_count);
 std::size_t bvh_scratch_need(std::uint32_t triangle_count);
 void bvh_build(const LeafKind& kind, Accel* accel, Arena* keep, Arena* scratch);

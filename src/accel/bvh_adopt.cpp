@@ -73,7 +73,7 @@ Status check_node(Walk* walk, const Visit& visit, Visit* stack, std::uint32_t* s
 
 }  // namespace
 
-// Whether every triangle is in exactly one leaf is not checked: a file that omits one shows a scene without it.
+// Does not check that every triangle is in exactly one leaf: a file that omits one shows a scene without it.
 Status bvh_adopt(const LeafKind& kind, Accel* accel, Array<const std::uint8_t> data) {
   CHECK_LE(kind.bytes, sizeof(TriangleBlock));  // a leaf is compared with one of these
   if (reinterpret_cast<std::uintptr_t>(data.data) % alignof(BvhNode) != 0)

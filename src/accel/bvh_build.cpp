@@ -1,8 +1,8 @@
 // Builds the BVH top down: a node takes a range of triangles and divides the part with the largest surface until it has
 // four parts. Small ranges become treelets, each of several nodes built at once.
 //
-// Ours: every range has a budget of leaves, little more than its triangles fill, and no division exceeds it. So memory
-// has a bound that can be planned for.
+// Ours: every range has a budget of leaves, slightly more than its triangles fill, and no division exceeds it. This
+// bounds the memory to plan for.
 #include <algorithm>
 #include <cstring>
 #include <limits>
@@ -46,16 +46,16 @@ static_assert(bvh_bytes(node_count_max(leaf_count_max(kTriangleCountMax)), leaf_
                   0xFFFFFFFFu,
               "fits into a 32-bit address space");
 
-// Levels of nodes that always suffice for n triangles when every range is halved: two halvings per level, including
-// rounding.
+// Number of levels of nodes that always suffices for n triangles when every range is halved: two halvings per level,
+// including rounding.
 std::uint32_t levels_when_halved(std::uint32_t n) {
   std::uint32_t levels = static_cast<std::uint32_t>(treelet_node_count(kTreeletLeafMax));
   for (std::uint64_t capacity = kTreeletMax; capacity < n; capacity *= 3) ++levels;
   return levels;
 }
 
-// The part to divide next: the one with the largest surface, or with the most triangles when ranges are halved. -1 if
-// none can be divided, which never happens with fewer than four parts larger than a treelet.
+// Returns the part to divide next: the one with the largest surface, or with the most triangles when ranges are halved.
+// -1 if none can be divided, which never happens with fewer than four parts larger than a treelet.
 int part_to_divide(const BuildPart* parts, int count, bool halve) {
   int best = -1;
   double best_weight = -1;
@@ -188,7 +188,7 @@ void build_nodes(Builder* builder, const BuildPart& root) {
   }
 }
 
-// The boxes of all triangles with valid vertices. Degenerate ones are kept: they may become valid in a refit.
+// Collects the boxes of all triangles with valid vertices, degenerate ones too: they may become valid in a refit.
 std::uint32_t collect_primitives(const Accel& accel, BuildPrimitive* primitives) {
   std::uint32_t count = 0;
   for (std::uint32_t i = 0; i < accel.triangles.count; ++i) {

@@ -77,7 +77,7 @@ bool division_is_allowed(const BuildPart& part, std::uint32_t left) {
          leaves_for(left) + leaves_for(part.count - left) <= part.leaf_max;
 }
 
-// The allowed count nearest to `wish`.
+// Returns the allowed count nearest to `wish`.
 std::uint32_t allowed_left_count(const BuildPart& part, std::uint32_t wish) {
   for (std::uint32_t step = 0;; ++step) {
     if (wish > step && division_is_allowed(part, wish - step)) return wish - step;

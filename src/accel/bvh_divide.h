@@ -10,10 +10,10 @@ struct BuildPart {
   WideBox box, centroids;                // of centroid2()
 };
 
-// The part of primitives[begin .. begin + count), with its boxes computed.
+// Makes the part primitives[begin .. begin + count) and computes its boxes.
 BuildPart make_part(const BuildPrimitive* primitives, std::uint32_t begin, std::uint32_t count, std::uint32_t leaf_max);
 
-// Whether the part's centroids differ, so that some divisions are better than others.
+// Returns whether the part's centroids differ, so that some divisions are better than others.
 bool has_division_axis(const BuildPart& part);
 
 // Each side must be one leaf or at least four, so that nodes do not stay half empty.

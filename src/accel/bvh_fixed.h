@@ -1,13 +1,13 @@
-// Rays traverse the BVH in integers, for CPUs without floating point; floats decide only where integers leave doubt,
-// and locate the hits that count. So the answers are those of the other kernels, bit for bit. Like every kernel,
-// compiled once per instruction set, in a namespace of its own.
+// Traverses the BVH in integers, for CPUs without floating point; floats only resolve what integers leave in doubt and
+// locate the hits that count. The answers equal those of the other kernels bit for bit. Like every kernel, compiled
+// once per instruction set, in its own namespace.
 #pragma once
 #include "accel/fixed_bundle.h"
 
 namespace pocketray {
 inline namespace POCKETRAY_ISA {
 
-constexpr int kFixedBundleMin = 4;  // fewer rays go one by one
+constexpr int kFixedBundleMin = 4;  // fewer rays are traced one by one
 
 // Bundles the rays of a packet by class and calls bundle(b) for each bundle and single(i) for the other rays.
 template <class Tree, class Rays, class Bundle, class Single>

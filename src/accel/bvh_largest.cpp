@@ -1,5 +1,5 @@
-// The largest value of a triangle, depth first and the best child first: nodes whose box cannot have a larger one are
-// left out.
+// Finds the largest value of a triangle, depth first and the best child first; skips nodes whose box cannot exceed the
+// best value so far.
 #include <limits>
 
 #include "accel/bvh.h"
@@ -10,7 +10,7 @@ namespace {
 
 struct Entry {
   std::uint32_t child;
-  float value;  // no triangle below has a larger one
+  float value;  // upper bound for all triangles below
 };
 
 float largest_of_leaf(const LeafKind& kind, const Accel& accel, std::uint32_t child, const TriangleQuery& query) {

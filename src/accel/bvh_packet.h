@@ -9,8 +9,8 @@
 namespace pocketray {
 inline namespace POCKETRAY_ISA {
 
-// Mask of the children that the pyramid meets; `depth` receives where they begin. Depth bounds are tested with
-// branches, here and in leaves: branches are predicted, while a mask would wait for the last hit.
+// Mask of the children that the pyramid meets; `depth` receives the depths at which they begin. Depth bounds are tested
+// with branches, here and in leaves: branches are predicted, while a mask would wait for the last hit.
 inline unsigned enter_boxes(const Packet& p, const BvhNode& node, float* depth) {
   const float *low_x = node.bounds[p.kx], *low_y = node.bounds[p.ky], *low_z = node.bounds[p.kz];
   const float *high_x = node.bounds[3 + p.kx], *high_y = node.bounds[3 + p.ky], *high_z = node.bounds[3 + p.kz];

@@ -7,7 +7,7 @@
 namespace pocketray {
 inline namespace POCKETRAY_ISA {
 
-// Whether all 64 directions certainly belong to the class; the other axes must be strictly less.
+// Returns whether all 64 directions certainly belong to the class; the other axes must be strictly smaller.
 inline bool all_of_class(const RayPacket& rays, int kx, int ky, int kz, float sign) {
   Float4 direction = Float4::splat(sign), max = Float4::splat(std::numeric_limits<float>::max());
   unsigned all = 15;
@@ -19,7 +19,7 @@ inline bool all_of_class(const RayPacket& rays, int kx, int ky, int kz, float si
   return all == 15;
 }
 
-// The rays of one class, if they are not the whole packet.
+// The rays of one class, when they are not the whole packet.
 struct GatheredRays {
   alignas(64) float direction[3][kPacketMax];  // by kx, ky, kz
   std::uint8_t place[kPacketMax];

@@ -57,7 +57,7 @@ void refit_node(const Refit& r, BvhNode* node) {
   }
 }
 
-// Of the vertices that can move, or of those that cannot.
+// Smallest nonzero magnitude of a coordinate over the vertices that can move or, with `still`, over all others.
 float least_coordinate_of(const Accel& accel, bool still) {
   float least = std::numeric_limits<float>::infinity();
   std::uint32_t from = 0;

@@ -44,12 +44,12 @@ void search_shaft(const Tree& bvh, Bundle* b, TraceStats* stats) {
   if (stats) stats->nodes += nodes, stats->triangles += triangles;
 }
 
-// The class of a shadow ray; also −1 if its origin is too far out to hit anything.
+// Returns the class of a shadow ray; −1 also if its origin is too far out to hit anything.
 inline int segment_class(const Ray& ray) {
   return has_valid_origin(ray.origin) ? axis_class(ray.direction.x, ray.direction.y, ray.direction.z) : -1;
 }
 
-// Classifies all rays. Returns the set of classes that occur.
+// Classifies all rays and returns the set of classes that occur.
 inline unsigned classify(const SegmentPacket& rays, std::int8_t* classes) {
   unsigned met = 0;
   for (std::uint32_t i = 0; i < rays.count; ++i) {
@@ -59,7 +59,7 @@ inline unsigned classify(const SegmentPacket& rays, std::int8_t* classes) {
   return met;
 }
 
-// Whether all rays certainly belong to a class; the other axes of all four at once must be strictly less.
+// Returns whether all rays certainly belong to a class; the other axes of all four at once must be strictly smaller.
 inline bool all_of_class(const SegmentPacket& rays, int wanted, const Bundle& b) {
   Float4 sign = Float4::splat(b.sign), max_direction = Float4::splat(std::numeric_limits<float>::max());
   Float4 max_origin = Float4::splat(kOriginMax);
@@ -76,7 +76,7 @@ inline bool all_of_class(const SegmentPacket& rays, int wanted, const Bundle& b)
   return true;
 }
 
-// The segments of one class, by kx, ky, kz; all segments if `classes` is null.
+// Gathers the segments of one class, by kx, ky, kz; all segments if `classes` is null.
 inline void gather_segments(const SegmentPacket& rays, const std::int8_t* classes, int wanted, Bundle* b) {
   const int axes[] = {b->kx, b->ky, b->kz};
   const float* from[] = {rays.origin[axes[0]],

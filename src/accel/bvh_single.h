@@ -22,14 +22,14 @@ struct Search {
   LeafRay leaf;
   const HitFilter* filter;  // accept() is not null
   float t_max;
-  float t;  // of the best hit; t_max if none
+  float t;  // t of the best hit; t_max if none
   std::uint32_t triangle;
-  double b, c, sum;        // its weights; with a filter …
+  double b, c, sum;        // weights of the best hit; with a filter …
   float u, v;              // … the quotients instead
   std::uint32_t from, to;  // as in Ray
 };
 
-// False if there is nothing to hit.
+// Returns false if there is nothing to hit.
 inline bool start_search(const Accel& accel, const Ray& ray, const HitFilter* filter, Search* search, BoxRay* box) {
   Float4 origin = Float4::load3(&ray.origin.x), d = Float4::load3(&ray.direction.x), amount = abs(d);
   Float4 low = Float4::load3(&accel.bounds.low.x), high = Float4::load3(&accel.bounds.high.x);
@@ -57,8 +57,8 @@ inline bool start_search(const Accel& accel, const Ray& ray, const HitFilter* fi
 
 inline unsigned lanes_in_use(std::uint32_t leaf_child) { return 15u >> (4 - leaf_triangle_count(leaf_child)); }
 
-// Takes the best hit of the passing lanes if it is better than the one so far. Returns whether it was. A separate
-// function, which leaves the registers to the node loop.
+// Takes the best hit of the passing lanes if it beats the best so far, and returns whether it did. A separate function,
+// so that it takes no registers from the node loop.
 template <bool kFiltered>
 __attribute__((noinline)) bool settle_leaf(Search* search, const TriangleBlock& block, unsigned pass,
                                            unsigned doubtful) {
@@ -83,7 +83,7 @@ __attribute__((noinline)) bool settle_leaf(Search* search, const TriangleBlock& 
   return better;
 }
 
-// Whether any triangle in the passing lanes is hit in (0, t_max).
+// Returns whether any triangle in the passing lanes is hit in (0, t_max).
 template <bool kFiltered>
 __attribute__((noinline)) bool any_crossing(const Search& search, const TriangleBlock& block, unsigned pass,
                                             unsigned doubtful) {
@@ -108,7 +108,7 @@ inline void sort_two(Entry* a, Entry* b) {
   *a = low, *b = high;
 }
 
-// Pushes all entered children (at least two) but the nearest, farthest first. Returns the nearest.
+// Pushes all entered children (at least two) except the nearest, farthest first. Returns the nearest.
 inline std::uint32_t push_farther(const BvhNode& node, unsigned mask, const float* enter, Entry** stack) {
   auto take = [&] {
     int lane = __builtin_ctz(mask);
@@ -173,7 +173,7 @@ inline void search_closest(const Tree& bvh, const BoxRay& box, Search* search, T
   }
 }
 
-// Without the lanes of triangles that the ray joins.
+// Removes the lanes of triangles at the ray's ends.
 inline unsigned without_ends(const Search& search, const TriangleBlock& block, unsigned pass) {
   for (unsigned left = pass; left; left &= left - 1) {
     const std::uint32_t triangle = block.triangle[__builtin_ctz(left)];

@@ -20,7 +20,7 @@ struct BlockTree {
     BvhView bvh(accel.data.data);
     nodes = bvh.nodes, leaves = bvh.leaves;
   }
-  // The triangles of a leaf child, in `scratch` unless the leaf holds them.
+  // Returns the triangles of a leaf child, in `scratch` unless the leaf holds them.
   const TriangleBlock& leaf(std::uint32_t child, TriangleBlock*) const { return leaves[child & kLeafIndexMask]; }
   // Prefetches a child.
   void prefetch(std::uint32_t child) const {

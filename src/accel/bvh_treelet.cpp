@@ -74,13 +74,13 @@ void sort_primitives(Treelet* treelet, std::uint32_t count) {
   }
 }
 
-// Whether a division leaves full leaves and allows full nodes: see halves_are_full().
+// Returns whether a division leaves full leaves and allows full nodes: see halves_are_full().
 bool side_by_side_is_full(std::uint32_t left, std::uint32_t right) {
   std::uint32_t left_leaves = leaves_for(left), right_leaves = leaves_for(right);
   return left_leaves + right_leaves == leaves_for(left + right) && halves_are_full(left_leaves, right_leaves);
 }
 
-// The cheapest full division of a node, over all positions on all axes. One exists: four primitives on the left.
+// Finds the cheapest full division of a node, over all positions on all axes. One exists: four primitives on the left.
 SweepDivision sweep(const Treelet& treelet, const TreeletNode& node) {
   SweepDivision best;
   double right_cost[kTreeletMax];
@@ -149,8 +149,8 @@ bool is_cheaper(const TreeletCost& a, const TreeletCost& b) {
   return a.node_count != b.node_count ? a.node_count < b.node_count : a.surface < b.surface;
 }
 
-// The cheapest ways to represent a subtree by one to four roots, from those of its halves [Wald, Benthin & Boulos 2008,
-// "Getting Rid of Packets", sec. 3.2].
+// Finds the cheapest ways to represent a subtree by one to four roots, given those of its halves [Wald, Benthin &
+// Boulos 2008, "Getting Rid of Packets", sec. 3.2].
 void choose_roots(TreeletNode* node, const Treelet& treelet) {
   double area = half_area(node->box);
   if (node->left == 0) {

@@ -1,4 +1,4 @@
-// Which rays meet no denormals, so that NEON of 32-bit ARM, which flushes them, traces them exactly.
+// Tells which rays meet no denormals, so that NEON of 32-bit ARM, which flushes them, traces them exactly.
 //
 // If all coordinates of vertices and origin are 0 or at least 2^-62, a difference of two of them is a multiple of
 // 2^-85, an ulp of the smaller one. With shears that are 0 or at least 2^-40, the sheared coordinates of
@@ -21,8 +21,8 @@ namespace pocketray {
 
 constexpr float kCoordinateMin = 0x1p-62f;
 
-// The least magnitude of a coordinate that is not 0; infinity if all are 0. Where no kernel flushes denormals, nobody
-// asks: 0.
+// Smallest magnitude of a coordinate other than 0; infinity if all are 0. Returns 0 where no kernel flushes denormals,
+// since it is not needed.
 inline float least_coordinate(Array<const Vec3> positions) {
 #if defined(POCKETRAY_HAVE_NEON32)
   float least = std::numeric_limits<float>::infinity();
@@ -38,14 +38,14 @@ inline float least_coordinate(Array<const Vec3> positions) {
 #endif
 }
 
-// Magnitude of a float as an integer: sorts like the magnitude, and one less than 0 is the greatest of all.
+// Magnitude of a float as an integer, which sorts like it. Less one, 0 becomes the greatest of all.
 inline std::uint32_t magnitude_bits(float x) {
   std::uint32_t word;
   std::memcpy(&word, &x, sizeof word);
   return word << 1;
 }
 
-// Judges rays one by one.
+// Tests rays one by one.
 class DenormalGuard {
  public:
   void add_origin(const Vec3& origin) {
@@ -56,7 +56,7 @@ class DenormalGuard {
     std::uint32_t most = a > b ? a : b, least = a - 1 < b - 1 ? a - 1 : b - 1;
     if (c > most) most = c;
     if (c - 1 < least) least = c - 1;
-    // The exponents of shears.
+    // Bounds on the exponents of shears.
     if (most - least > kShearSpan + 1 || most - kDirectionMin > kDirectionMax - kDirectionMin) safe_ = false;
   }
   void add_end(float t_max) {
@@ -70,7 +70,7 @@ class DenormalGuard {
   static void keep_least(std::uint32_t value, std::uint32_t* least) {
     if (value < *least) *least = value;
   }
-  static constexpr std::uint32_t kCoordinateBits = (127u - 62) << 24;  // of kCoordinateMin
+  static constexpr std::uint32_t kCoordinateBits = (127u - 62) << 24;  // kCoordinateMin as bits
   std::uint32_t coordinate_ = ~0u;
   bool safe_ = true;
 };

@@ -26,7 +26,7 @@ inline FixedSlab child_slab(const BvhNode& node, int lane, int axis, const Fixed
   return {(low + high) >> 1, ((high - low) >> 1) + 1 + kBoxSlack};
 }
 
-// The slabs of a child, each converted when it is asked for and kept in `box`.
+// Slabs of a child, each converted on first use and kept in `box`.
 struct ChildSlabs {
   const BvhNode& node;
   int lane;
@@ -48,7 +48,7 @@ struct KeptSlabs {
   FixedSlab y() const { return box.y; }
 };
 
-// Whether the ray misses the box up to the depth `limit`; else *near receives the depth where it begins.
+// Returns whether the ray misses the box up to depth `limit`; if not, *near receives the depth where it begins.
 template <class Slabs>
 inline bool misses(const FixedRay& ray, const Slabs& slabs, std::int32_t limit, std::int32_t* near) {
   FixedSlab along = slabs.z();

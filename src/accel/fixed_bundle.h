@@ -10,15 +10,15 @@ inline namespace POCKETRAY_ISA {
 constexpr int kFixedGroup = 16, kFixedGroups = static_cast<int>(kPacketMax) / kFixedGroup;
 static_assert(kFixedGroup <= 32 && kPacketMax % kFixedGroup == 0, "a bit of a word for each ray of a group");
 
-// Groups of sixteen have hulls of their own.
+// Rays in groups of sixteen, each with its own hull.
 struct FixedBundle {
   FixedFrame frame;
   int count = 0, group_count;
   FixedHull all, group[kFixedGroups];
-  std::uint32_t open[kFixedGroups];  // the rays of a group to be searched for
+  std::uint32_t open[kFixedGroups];  // rays of a group still being traced
   std::int32_t start[kPacketMax];    // depth of the first plane of the hulls from the ray's origin: 0 or less
   DualRay ray[kPacketMax];
-  std::uint8_t place[kPacketMax];  // in the packet
+  std::uint8_t place[kPacketMax];  // index in the packet
 };
 
 inline void add_ray(FixedBundle* b, const Ray& ray, std::uint32_t place) {
@@ -26,7 +26,7 @@ inline void add_ray(FixedBundle* b, const Ray& ray, std::uint32_t place) {
   b->place[b->count++] = static_cast<std::uint8_t>(place);
 }
 
-// Everything but frame, count, ray and place. `limit` has the depths where rays end.
+// Sets everything but frame, count, ray and place. `limit` has the depths at which rays end.
 inline void set_hulls(FixedBundle* b, const std::int32_t* limit) {
   std::int32_t near = b->ray[0].fixed.z, far = near;
   for (int i = 0; i < b->count; ++i) {
@@ -54,8 +54,8 @@ inline void set_hulls(FixedBundle* b, const std::int32_t* limit) {
   b->all = {near, length, hull_side(all_x, per_length), hull_side(all_y, per_length)};
 }
 
-// Visits the rays of the bundle that pass through a leaf's box; limit_of(i) bounds the depth of ray i. visit(i) tells
-// whether the ray is searched for no longer.
+// Visits the rays of the bundle that pass through a leaf's box; limit_of(i) bounds the depth of ray i. visit(i) returns
+// true if the ray needs no further search.
 template <class Limit, class Visit>
 inline void for_each_ray(FixedBundle* b, const FixedBox& box, std::int32_t limit, Limit limit_of, Visit visit) {
   const KeptSlabs slabs = {box};

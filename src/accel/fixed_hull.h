@@ -51,8 +51,8 @@ inline HullSide hull_side(const HullRange& r, float per_length) {
   return side;
 }
 
-// Whether all rays of the hull miss the box up to the depth `limit`; else *near receives the depth where it begins.
-// Depths count from the first plane.
+// Returns whether all rays of the hull miss the box up to the depth `limit`; if not, *near receives the depth where the
+// box begins. Depths count from the first plane.
 template <class Slabs>
 inline bool misses(const FixedHull& hull, const Slabs& slabs, std::int32_t limit, std::int32_t* near) {
   FixedSlab along = slabs.z();

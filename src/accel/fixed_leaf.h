@@ -38,7 +38,7 @@ inline FixedTriangle fixed_triangle(const TriangleBlock& block, int lane, const 
   return v;
 }
 
-// As seen from the ray.
+// Shears a coordinate of the vertices into the ray's frame.
 inline FixedRow sheared_row(const std::int32_t* v, std::int32_t origin, std::int32_t shear, const FixedRow& z) {
   FixedRow r;
   for (int i = 0; i < 3; ++i) r.at[i] = v[i] - origin - part(z.at[i], shear);
@@ -52,8 +52,8 @@ inline FixedRow depth_row(const FixedRay& ray, const FixedTriangle& v) {
 // doubtful: too close to decide here.
 enum class FixedVerdict { missed, doubtful, crossed };
 
-// Whether the ray's line crosses the triangle `v` with vertices at depths z. *positive: sign of the edge functions if
-// crossed.
+// Classifies the ray's line against the triangle `v` with vertices at depths z. *positive: sign of the edge functions
+// if crossed.
 inline FixedVerdict cross_fixed(const FixedRay& ray, const FixedTriangle& v, const FixedRow& z, bool* positive) {
   // Where |x| exceeds this, 2u|x| is less than the rest of the excess.
   std::int32_t slack = 8 + (most(z.high, -z.low) >> 19);
@@ -81,13 +81,13 @@ inline FixedVerdict cross_fixed(const FixedRay& ray, const FixedTriangle& v, con
 // the components of n are cut to 31 bits, which costs 3·2^30.
 struct FixedPlane {
   std::int32_t normal[3], vertex[3];  // by x, y, z; the vertex from the origin
-  std::int64_t size, cut_error;       // |n|₁; of a height
+  std::int64_t size, cut_error;       // |n|₁; error of a height
   bool against;                       // the ray runs against the normal
 };
 
 inline int bit_length(std::uint32_t a) { return a ? 32 - __builtin_clz(a) : 0; }
 
-// False if rounding could decide on which side a point lies.
+// Returns false if rounding could decide on which side a point lies.
 inline bool fixed_plane(const FixedRay& ray, const FixedTriangle& v, const FixedRow& z, bool positive,
                         FixedPlane* plane) {
   std::int32_t p[3][3];  // the vertices from the origin, by axis
@@ -116,7 +116,7 @@ inline bool fixed_plane(const FixedRay& ray, const FixedTriangle& v, const Fixed
   return true;
 }
 
-// Where the ray's line meets the plane, seen from its point at a depth.
+// Where the ray's line meets the plane, relative to its point at a depth.
 enum class FixedSide { unknown, before, beyond };
 inline FixedSide meets_plane(const FixedPlane& plane, const FixedRay& ray, std::int32_t depth) {
   std::int32_t x = plane.vertex[0], y = plane.vertex[1], z = plane.vertex[2] - depth;
@@ -127,12 +127,12 @@ inline FixedSide meets_plane(const FixedPlane& plane, const FixedRay& ray, std::
   return height > error ? FixedSide::beyond : height < -error ? FixedSide::before : FixedSide::unknown;
 }
 
-// Whether the triangle certainly has no t in (0, t_max); `limit` is the depth for t_max.
+// Returns whether the triangle certainly has no t in (0, t_max); `limit` is the depth for t_max.
 inline bool surely_outside(const FixedPlane& plane, const FixedRay& ray, const FixedRow& z, std::int32_t limit) {
   return (z.low < 4 && meets_plane(plane, ray, 0) == FixedSide::before) ||
          (z.high > limit && meets_plane(plane, ray, limit) == FixedSide::beyond);
 }
-// Whether its t certainly lies between the sure depths.
+// Returns whether its t certainly lies between the sure depths.
 inline bool surely_inside(const FixedPlane& plane, const FixedRay& ray, const FixedRow& z, const FixedDepths& sure) {
   return (sure.low <= z.low || meets_plane(plane, ray, sure.low) == FixedSide::beyond) &&
          (z.high <= sure.high || meets_plane(plane, ray, sure.high) == FixedSide::before);

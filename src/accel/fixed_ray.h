@@ -27,7 +27,7 @@ struct FixedRay {
   std::int32_t x, y, z, shear_x, shear_y, size_x, size_y;  // size: |shear|
 };
 
-// Depths up to which a hit at t or before lies; see bound_depth() in leaf_ray.h.
+// Depth that bounds all hits up to t; see bound_depth() in leaf_ray.h.
 inline std::int32_t depth_limit(float t, float direction_z, int exponent) {
   float far = (t + std::numeric_limits<float>::denorm_min()) * std::fabs(direction_z) * (1 + 0x1p-20f);
   return to_fixed(far, exponent) + 4;
@@ -43,7 +43,7 @@ inline FixedDepths fixed_sure_depths(float t_max, float direction_z, int exponen
   return {to_fixed((size + 1) * kTiny, exponent) + 3, far >= kTiny ? to_fixed(far, exponent) - 2 : 0};
 }
 
-// The greatest biased exponent among three coordinates.
+// Greatest biased exponent of three coordinates.
 inline int greatest_exponent(const Vec3& a) {
   std::uint32_t x = magnitude_bits(a.x), y = magnitude_bits(a.y), z = magnitude_bits(a.z);
   std::uint32_t most = x > y ? x : y;

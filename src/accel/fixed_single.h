@@ -1,4 +1,4 @@
-// Single rays traverse the BVH in integers; what they do in a leaf, bundles do, too. Part of the kernels: see
+// Single rays traverse the BVH in integers; bundles share the leaf code. Part of the kernels: see
 // bvh_fixed.h.
 #pragma once
 #include "accel/bvh_single.h"
@@ -15,7 +15,7 @@ struct DualRay {
   float t_max;
 };
 
-// Of a query. accept() of the filter is not null.
+// Data of a query. accept() of the filter is not null.
 template <class Tree>
 struct FixedQuery {
   FixedQuery(const Accel& a, const HitFilter* f, TraceStats* s)
@@ -30,7 +30,7 @@ struct FixedQuery {
   int bounds_exponent;
 };
 
-// How a ray begins: it hits nothing, or coordinates are too small for integers, or neither.
+// How a ray starts: it hits nothing, its coordinates are too small for integers, or neither.
 enum class FixedStart { nothing, in_floats, in_integers };
 template <class Tree>
 FixedStart start_fixed(const FixedQuery<Tree>& query, const Ray& ray, int* of_class, int* exponent) {
@@ -74,7 +74,7 @@ inline bool accepts(const HitFilter& filter, std::uint32_t triangle, const Cross
                        static_cast<float>(crossing.c / crossing.sum));
 }
 
-// Takes the hit of a triangle `v` of a leaf if it is better than the best so far. Returns whether it was.
+// Takes the hit of a triangle `v` of a leaf if it beats the best so far. Returns whether it did.
 inline bool improves(const DualRay& ray, const FixedFrame& frame, const HitFilter* filter, const TriangleBlock& block,
                      int lane, const FixedTriangle& v, FixedBest* best) {
   FixedRow z = depth_row(ray.fixed, v);
@@ -96,7 +96,7 @@ inline bool improves(const DualRay& ray, const FixedFrame& frame, const HitFilte
   return true;
 }
 
-// The depths of a ray's t_max.
+// Depths of a ray's t_max.
 struct FixedEnd {
   FixedDepths sure;
   std::int32_t limit;
@@ -106,8 +106,8 @@ inline FixedEnd end_of(const DualRay& ray, const FixedFrame& frame) {
           depth_limit(ray.t_max, ray.exact.direction[2], frame.exponent)};
 }
 
-// Whether a triangle `v` of a leaf blocks the ray. A filter that does not read the point is asked first: its answer is
-// cheaper than the rest.
+// Returns whether a triangle `v` of a leaf blocks the ray. A filter that does not read the point is asked first,
+// because it is cheaper than the rest.
 inline bool is_blocked(const DualRay& ray, const FixedEnd& end, const HitFilter* filter, const TriangleBlock& block,
                        int lane, const FixedTriangle& v) {
   FixedRow z = depth_row(ray.fixed, v);

@@ -23,7 +23,7 @@ Status adopt(Accel*, Array<const std::uint8_t>) {
   return failure("accelerator: a grid changes while it is used, so it is not read from a file; bake another");
 }
 
-// Within a visit.
+// Called during a visit.
 void closest_of(const Accel& accel, const Ray& ray, const HitFilter* filter, Hit* hit, TraceStats* stats) {
   GridWalk walk = {accel, Grid(accel)};
   if (start_walk(ray, filter, stats, &walk)) walk_to_closest(&walk);
@@ -55,8 +55,8 @@ std::uint64_t occluded_packet(const Accel& accel, const SegmentPacket& rays, con
 
 }  // namespace
 
-// Without refit(): vertices that moved touch other voxels, and building the root again costs less than finding which
-// (sec. 3.3). Resubdivision (sec. 3.3.2) is then left to the rays. Without magic: there is nothing to bake.
+// No refit(): moved vertices touch other voxels, and rebuilding the root costs less than finding out which (sec. 3.3).
+// Resubdivision (sec. 3.3.2) is left to the rays. No magic: there is nothing to bake.
 const AccelInfo kGridAccel = {
     {closest, closest_packet, occluded, occluded_packet},
     "grid",

@@ -1,4 +1,4 @@
-// Builds the root grid. Everything below it is made when rays call for it: grid_subdivide.cpp.
+// Builds the root grid. Grids below it are made on demand by rays: grid_subdivide.cpp.
 #include <new>
 
 #include "accel/grid_pool.h"
@@ -19,8 +19,8 @@ static_assert((kRootPlace + root_words_max(kTriangleCountMax) +
                   0xFFFFFFFFu,
               "fits into a 32-bit address space");
 
-// Bounds of every triangle with valid vertices, as all accelerators report them; the ids and bounds of those that rays
-// can hit.
+// Bounds of every triangle with valid vertices, as all accelerators report them; ids and bounds of the triangles that
+// rays can hit.
 struct Content {
   Array<std::uint32_t> ids;
   Box bounds, hittable;
@@ -40,8 +40,8 @@ Content find_content(const Accel& accel, Arena* scratch) {
   return content;
 }
 
-// The box of the root grid: a little larger on either side, unequally. Models have planes at round fractions of their
-// size; without this, they lie in the faces of voxels, hence in those of both sides.
+// Box of the root grid: slightly larger on either side, by unequal amounts. Models have planes at round fractions of
+// their size; without this, these coincide with the faces of voxels and lie in the voxels on both sides.
 Box root_box(const Box& bounds) {
   if (is_empty(bounds)) return {{0, 0, 0}, {0, 0, 0}};
   Box box = bounds;

@@ -10,13 +10,13 @@ namespace pocketray {
 namespace {
 
 constexpr std::uint32_t kGivingUp = 1u << 31;
-// The clock advances whenever this part of the pool has been taken, so a stamp tells the age of a grid in that unit.
+// The clock advances whenever this part of the pool has been taken; the age of a grid counts these ticks.
 constexpr std::uint32_t kTicksPerPool = 16;
 constexpr std::uint32_t kAgeMax = kTicksPerPool;
-// Part of the pool given up at once: a quarter, so that waiting for the other threads is rare.
+// Part of the pool discarded at once: a quarter, so that waiting for the other threads is rare.
 constexpr std::uint32_t kGivenUpPart = 4;
-// After a search in vain, the next so many requests are turned away at once: as many as a pool has blocks, in order of
-// magnitude, so that searching takes little of the time.
+// After a failed search, reject this many requests immediately: about as many as a pool has blocks, so that searching
+// takes little of the time.
 constexpr std::uint32_t kRestAfterFailure = 4096;
 
 std::uint32_t pool_words(const GridHeader& h) { return h.pool_end - h.pool_begin; }
@@ -33,7 +33,7 @@ std::uint32_t age_of(const GridHeader& h, const GridNode& node) {
   return age < kAgeMax ? age : kAgeMax;
 }
 
-// Whether the grid or one above it has that age. A ray enters all of them, but threads may stamp them in any order.
+// Returns whether the grid or one above it has that age. A ray enters all of them; threads stamp them in any order.
 bool has_age(const Grid& grid, const GridNode& node, std::uint32_t age) {
   const GridNode* n = &node;
   for (; n->parent; n = &grid.node(n->parent))
@@ -41,7 +41,7 @@ bool has_age(const Grid& grid, const GridNode& node, std::uint32_t age) {
   return false;
 }
 
-// A free block of that many words at the next place that has one, or 0. Grids in use are not touched.
+// Returns the next free block of that many words, or 0. Grids in use are not touched.
 std::uint32_t find_block(const Grid& grid, std::uint32_t words) {
   GridHeader& h = grid.header();
   std::uint32_t place = h.next < h.pool_end ? h.next : h.pool_begin;
@@ -72,7 +72,7 @@ void for_each_grid(const Grid& grid, Visit visit) {
     if (is_in_use(grid.node(place))) visit(grid.node(place));
 }
 
-// The least age such that grids of it and above fill a part of the pool; at least 1. 0 if there are none.
+// Returns the least age such that grids of at least this age fill a part of the pool; at least 1. 0 if there are none.
 std::uint32_t age_to_give_up(const Grid& grid) {
   std::uint64_t words[kAgeMax + 1] = {};
   for_each_grid(grid, [&](const GridNode& node) { words[age_of(grid.header(), node)] += words_of(node); });
@@ -96,7 +96,7 @@ bool give_up_inactive(const Grid& grid, std::uint32_t parent) {
   if (age == 0) return false;
   for_each_grid(grid, [&](GridNode& node) {
     if (!has_age(grid, node, age)) return;
-    // If the parent has been given up as well, its cells are still there: nothing takes their place before the end.
+    // If the parent has been discarded as well, its cells are still there: nothing overwrites them before the end.
     cells_of(grid.node(node.parent))[node.cell].child.store(kNotSubdivided, std::memory_order_relaxed);
     node.block &= ~kBlockInUse;
     ++h.given_up_count;
@@ -141,7 +141,7 @@ std::uint32_t take_block(const Grid& grid, std::uint32_t parent, std::uint64_t w
   }
   if (!place) {
     h.rest = kRestAfterFailure;
-    tick(&h);  // what no ray enters from now on may be given up then
+    tick(&h);  // grids not entered from now on may then be discarded
     return 0;
   }
   h.words_since_tick += size;

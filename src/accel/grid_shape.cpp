@@ -28,8 +28,8 @@ double sum_of(const Vec3d& a) { return a.x + a.y + a.z; }
 
 // The plane of a triangle against cells of a grid, all of one size.
 struct PlaneTest {
-  Vec3d corner, normal, half;  // half of a cell, with room for the errors of cell_begin() and cell_of()
-  double reach, error;         // the plane's distance within which it meets a cell; relative error of a distance
+  Vec3d corner, normal, half;  // half: half a cell, with room for the errors of cell_begin() and cell_of()
+  double reach, error;         // distance within which the plane meets a cell; relative error of a distance
 
   PlaneTest(const GridShape& shape, const Vec3& a, const Vec3& b, const Vec3& c) : corner(to_double(a)) {
     Vec3d ab = to_double(b) - corner, ac = to_double(c) - corner;
@@ -46,7 +46,7 @@ struct PlaneTest {
   }
 };
 
-// The cells whose list a triangle belongs in: those that its box touches and, of many, its plane too.
+// Visits the cells whose list must contain a triangle: those that its box touches and, if many, its plane too.
 template <class Visit>
 void for_each_cell(const Accel& accel, const GridShape& shape, std::uint32_t triangle, Visit visit) {
   CellRange r = cells_of_box(shape, triangle_box(accel, triangle));
@@ -72,7 +72,7 @@ std::uint64_t count_ids(const Accel& accel, Array<const std::uint32_t> ids, cons
   return count;
 }
 
-// Cells as near to cubes as whole numbers allow [Fujimoto et al. 1986, ARTS], at most `cell_count` of them: their edge
+// Makes cells as nearly cubic as whole numbers allow [Fujimoto et al. 1986, ARTS], at most `cell_count`: their edge
 // shrinks by steps of an eighth. No cube root: pictures do not depend on it, but the work counted per pixel does.
 void divide_box(const Box& box, std::uint64_t cell_count, GridShape* shape) {
   double extents[3], edge = 0;

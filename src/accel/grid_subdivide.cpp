@@ -11,7 +11,7 @@ namespace {
 
 Box overlap(const Box& a, const Box& b) { return {max(a.low, b.low), min(a.high, b.high)}; }
 
-// The part of the voxel that its triangles' boxes cover.
+// Returns the part of the voxel covered by its triangles' boxes.
 Box content_box(const Accel& accel, const GridShape& shape, std::uint32_t cell, Array<const std::uint32_t> ids) {
   Box box = empty_box();
   for (std::uint32_t id : ids) box = merge(box, triangle_box(accel, id));
@@ -20,8 +20,8 @@ Box content_box(const Accel& accel, const GridShape& shape, std::uint32_t cell, 
   return box;
 }
 
-// Whether a ray is expected to have less to do in the grid than with the voxel's triangles. A ray along a random line
-// crosses about half as many cells as there are slices along all axes, and a visit counts as half a triangle's test.
+// Returns whether the grid is expected to cost a ray less than the voxel's triangles. A ray along a random line crosses
+// about half as many cells as there are slices along all axes, and a visit counts as half a triangle test.
 bool is_worth_it(const GridShape& shape, std::uint64_t id_count, std::uint32_t triangle_count) {
   double cells = cell_count_of(shape), slices = shape.cells[0] + shape.cells[1] + shape.cells[2];
   return cells > 1 && slices / 2 * (static_cast<double>(id_count) / cells + 0.5) < triangle_count;

@@ -8,7 +8,7 @@
 namespace pocketray {
 namespace {
 
-// The farthest distance of a hit at t. t may be rounded by half of the least denormal.
+// Farthest distance of a hit at t. t may be rounded by half of the least denormal.
 double distance_at(const GridWalk& walk, float t) {
   return (double(t) + double(std::numeric_limits<float>::denorm_min())) * walk.speed;
 }
@@ -37,8 +37,8 @@ bool test_triangles(GridWalk* w, const std::uint32_t* ids, std::uint32_t count) 
   return false;
 }
 
-// Shortens a range of distances to where the ray is beside the grid along a minor axis, by the padding twice: what the
-// division loses by cancellation is less. False if nowhere.
+// Shortens a range of distances to the part where the ray is within the grid along a minor axis, padded twice: the
+// division loses less than that by cancellation. Returns false if the range is empty.
 bool clip_to_grid(const GridWalk& w, const GridShape& shape, int axis, double* from, double* to) {
   double low = double(shape.low[axis]) - 2 * w.padding - w.origin[axis];
   double high = cell_begin(shape, axis, shape.cells[axis]) + 2 * w.padding - w.origin[axis];
@@ -49,7 +49,7 @@ bool clip_to_grid(const GridWalk& w, const GridShape& shape, int axis, double* f
   return *from <= *to;
 }
 
-// A minor axis of a grid, in cells instead of coordinates: where the ray is at a distance.
+// A minor axis of a grid, in cells instead of coordinates: the ray's position at a distance.
 struct CellTrack {
   double start, rate, padding;
   std::uint32_t last;
@@ -57,7 +57,7 @@ struct CellTrack {
   CellTrack(const GridWalk& w, const GridShape& shape, int axis) : last(shape.cells[axis] - 1u) {
     double inverse = double(shape.inverse[axis]);
     start = (w.origin[axis] - double(shape.low[axis])) * inverse, rate = w.slope[axis] * inverse;
-    padding = 2 * w.padding * inverse;  // aside, and before and after the distance, where the ray strays by no more
+    padding = 2 * w.padding * inverse;  // sideways, and along the ray, over which it strays by no more
   }
   double at(double distance) const { return start + distance * rate; }
   std::uint32_t cell(double place) const {
@@ -84,7 +84,7 @@ bool visit_cell(GridWalk* w, std::uint32_t place, GridNode& node, std::uint32_t 
   return test_triangles<kAny>(w, ids_of(node) + begin, count);
 }
 
-// All voxels of a grid that the ray touches between two distances, nearer slices first.
+// Visits all voxels of a grid that the ray touches between two distances, nearer slices first.
 template <bool kAny>
 bool walk_grid(GridWalk* w, std::uint32_t place, double from, double to) {
   GridNode& node = w->grid.node(place);

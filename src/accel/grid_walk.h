@@ -1,7 +1,7 @@
-// The walk of a ray through the grids. It follows the axis along which the ray is fastest, slice by slice of voxels,
-// and in each slice visits the voxels that a ray of the width `padding` touches. So a voxel is entered if there is any
-// doubt that it holds a hit, and no error accumulates from step to step as in [Fujimoto et al. 1986] or [Amanatides &
-// Woo 1987].
+// Walks a ray through the grids. The walk follows the axis along which the ray is fastest, slice by slice of voxels,
+// and in each slice visits the voxels that a ray of width `padding` touches. A voxel is thus entered whenever it
+// might hold a hit, and no error accumulates from step to step as in [Fujimoto et al. 1986] or [Amanatides & Woo
+// 1987].
 //
 // Distances are measured along that axis, in double, from the origin. The padding covers, with u = 2^-24 and R the
 // farthest that the scene extends from the origin along any axis: cross_triangle() accepts hits of rays that miss the
@@ -14,8 +14,8 @@
 
 namespace pocketray {
 
-// Triangles lie in several voxels: the last ones tested are remembered, in a table by their lowest bits ("mailbox"
-// [Amanatides & Woo 1987], here of the ray, since several threads share the triangles).
+// Triangles lie in several voxels: a table indexed by their lowest bits remembers the last ones tested ("mailbox"
+// [Amanatides & Woo 1987], here per ray, since several threads share the triangles).
 // Measured: with 16, seesaw takes 1.2 times as long.
 constexpr std::uint32_t kMailboxSize = 64;
 
@@ -37,11 +37,11 @@ struct GridWalk {
   std::uint32_t tested[kMailboxSize];
 };
 
-// Prepares a walk whose accelerator is set. False if the ray hits nothing.
+// Prepares a walk whose accelerator is set. Returns false if the ray hits nothing.
 bool start_walk(const Ray& ray, const HitFilter* filter, TraceStats* stats, GridWalk* walk);
-// Finds the closest hit: walk->hit.
+// Finds the closest hit and stores it in walk->hit.
 void walk_to_closest(GridWalk* walk);
-// Whether there is any hit.
+// Returns whether there is any hit.
 bool walk_to_any(GridWalk* walk);
 
 }  // namespace pocketray

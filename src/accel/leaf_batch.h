@@ -1,4 +1,4 @@
-// The rays of a packet against a few leaves. Part of the kernels: see bvh_packet.h.
+// Tests the rays of a packet against a few leaves. Part of the kernels: see bvh_packet.h.
 //
 // Leaves whose projection is small are searched in steps, each over all leaves: find the rays in their bounds, run the
 // float test of a triangle on these, settle the hits of those that pass. The iterations of a step do not wait for each
@@ -29,8 +29,8 @@ struct Candidate {
   bool sure;
 };
 
-// Whether to test each ray in the leaf's bounds with all four triangles, which is faster for fewer than about ten rays
-// (measured with bench_embree).
+// Returns whether to test each ray in the leaf's bounds against all four triangles, which is faster for fewer than
+// about ten rays (measured with bench_embree).
 inline bool is_small(const Packet& p, const LeafProjection& leaf) {
   float width = leaf.bounds.x_high - leaf.bounds.x_low, height = leaf.bounds.y_high - leaf.bounds.y_low;
   width = width < 2 ? width : 2, height = height < 2 ? height : 2;  // no window is larger; avoids 0·∞

@@ -6,7 +6,7 @@
 namespace pocketray {
 inline namespace POCKETRAY_ISA {
 
-// Lines of the edges: x·qx + y·qy + z is the edge function of a ray q, up to its error.
+// Edge lines: x·qx + y·qy + z is the edge function of a ray q, up to its error.
 struct EdgeLines {
   alignas(16) float x[3][4], y[3][4], z[3][4];
 };
@@ -86,11 +86,11 @@ struct EdgeRange {
   F low, high;
 };
 
-// Masks of the lanes that may be hits and of those that certainly are.
+// Masks of the lanes that may be hits and of the lanes that certainly are.
 struct Passing {
   unsigned pass, sure;
 };
-// Judges edge functions with an error up to `error`; `alive` are the lanes in question.
+// Classifies edge functions with an error up to `error`; `alive` are the lanes in question.
 template <class F, class Mask>
 inline Passing judge(const EdgeRange<F>& e, F error, Mask alive) {
   F minus = F::splat(0) - error;
@@ -133,7 +133,7 @@ inline Mask4 meets(const Bounds4& b, const Windows4& w) {
          (b.y_low <= Float4::load(w.y_high)) & (Float4::load(w.y_low) <= b.y_high);
 }
 
-// Mask of the windows in which the triangle may be hit at some point; *inside: certainly hit at every point.
+// Mask of the windows in which the triangle may be hit at some point; *inside: those certainly hit at every point.
 inline unsigned cross_windows(const Packet& p, const SplatTriangle<Float4>& t, const Windows4& w, unsigned* inside) {
   Float4 x = Float4::load(w.x) - p.middle4[0], y = Float4::load(w.y) - p.middle4[1], half_x = Float4::load(w.half_x),
          half_y = Float4::load(w.half_y);

@@ -1,4 +1,4 @@
-// A ray against the four triangles of a leaf. Part of the kernels: see bvh_kernels.h.
+// Tests a ray against the four triangles of a leaf. Part of the kernels: see bvh_kernels.h.
 //
 // The edge functions of all four are computed in float as in cross_triangle(); unless one is zero, their signs decide.
 // Triangles whose depth along the dominant axis excludes a hit (or, for a shadow ray, settles one) are done with: a hit
@@ -21,7 +21,7 @@ constexpr Axes kAxesX = {1, 2, 0, 4, 8, 0}, kAxesY = {2, 0, 1, 8, 0, 4}, kAxesZ 
 // By the set of largest components; the last of them dominates, as in make_sheared_ray().
 constexpr Axes kAxesByGreatest[8] = {kAxesX, kAxesX, kAxesY, kAxesY, kAxesZ, kAxesZ, kAxesZ, kAxesZ};
 
-// Along those axes.
+// Ray data along those axes.
 struct ExactRay {
   float origin[3], direction[3], shear[2];
   const Axes* axes;
@@ -60,8 +60,8 @@ struct SureDepths {
   Float4 low, high;
 };
 inline SureDepths sure_depths(float t_max, float direction_z) {
-  // Within these t neither overflows nor rounds to 0 or to t_max. Denormals are excluded because they slow the CPU
-  // down.
+  // Within these bounds, t neither overflows nor rounds to 0 or to t_max. Denormals are excluded because they slow the
+  // CPU down.
   constexpr float kMax = std::numeric_limits<float>::max(), kTiny = 0x1p-80f;
   float size = std::fabs(direction_z), far = (t_max < kMax ? t_max : kMax) * size * (1 - 0x1p-20f);
   float near = (size + 1) * kTiny;
@@ -76,7 +76,7 @@ struct LeafLanes {
   unsigned sure;      // passes, and is certainly hit in (0, t_max)
 };
 
-// A vertex of several triangles, relative to the origin.
+// One vertex of several triangles, relative to the origin.
 template <class T>
 struct Corner {
   T x, y, z;
@@ -106,8 +106,8 @@ inline LeafLanes test_leaf(const LeafRay& ray, const SureDepths* sure, const Tri
   return lanes;
 }
 
-// exact_weights() and place_crossing() of a triangle of the leaf. False if the weights differ in sign. kSigned: they
-// are known not to.
+// exact_weights() and place_crossing() for a triangle of the leaf. Returns false if the weights differ in sign.
+// kSigned: they are known not to.
 template <bool kSigned = false>
 inline bool place_in_leaf(const ExactRay& ray, const TriangleBlock& block, int lane, Crossing* crossing) {
   double ox = ray.origin[0], oy = ray.origin[1], oz = ray.origin[2];
@@ -121,13 +121,13 @@ inline bool place_in_leaf(const ExactRay& ray, const TriangleBlock& block, int l
   Corner<double> p = corner(0), q = corner(1), r = corner(2);
   EdgeValues<double> w = edge_values<double>(p.x, p.y, q.x, q.y, r.x, r.y);
   if constexpr (!kSigned) {
-    // One branch: which side of a triangle a ray meets is unpredictable.
+    // A single branch: which side of a triangle a ray meets is unpredictable.
     bool above = (w.a >= 0) & (w.b >= 0) & (w.c >= 0), below = (w.a <= 0) & (w.b <= 0) & (w.c <= 0);
     if (above == below) return false;
   }
   double sum = w.a + w.b + w.c;
   *crossing = {w.b, w.c, sum, static_cast<float>((w.a * p.z + w.b * q.z + w.c * r.z) / (sum * dz))};
-  // cross_alone() tells whether the ray begins on the plane.
+  // cross_alone() decides whether the ray begins on the plane.
   return !is_close_hit(crossing->t, ray.direction[2], p.z, q.z, r.z);
 }
 

@@ -50,7 +50,7 @@ struct Packet {
   float t_max;
   const HitFilter* filter;
   const float *direction_x, *direction_y, *direction_z;  // by kx, ky, kz; padded for the widest lanes
-  const std::uint8_t* place;                             // of a ray in the caller's arrays
+  const std::uint8_t* place;                             // ray's index in the caller's arrays
   int count;                                             // a multiple of sixteen
   bool has_groups;
   float all_far;  // bound on the depth of a hit that counts, for any ray
@@ -58,7 +58,7 @@ struct Packet {
   Float4 sign4, origin4[3], middle4[2], half4[2];  // the same value in all lanes
   Float4 window4[4];                               // window of all rays, in all lanes: low and high x, low and high y
   alignas(64) float x[kPacketMax], y[kPacketMax];  // q: the shears of the ray, times sign
-  alignas(64) float far[kPacketMax];  // the same bound for each ray; −∞ in the padding of the last group
+  alignas(64) float far[kPacketMax];               // depth bound of each ray; −∞ in the padding of the last group
   alignas(64) float group_far[kPacketMax / 4];
   // The nearest hits so far; without one, t is t_max and triangle kNoTriangle.
   alignas(64) float t[kPacketMax], u[kPacketMax], v[kPacketMax];

@@ -1,8 +1,8 @@
-// The rays of a packet against one triangle. Part of the kernels: see bvh_packet.h.
+// Tests the rays of a packet against one triangle. Part of the kernels: see bvh_packet.h.
 //
 // Windows and edge lines tell which rays certainly miss a triangle and which certainly hit it; cross_triangle() decides
-// the others, close to an edge. The hit is located with the same arithmetic, for several rays at once. So the answers
-// are those of single rays, bit for bit.
+// the others, close to an edge. Hits are located with single-ray arithmetic, for several rays at once. So the answers
+// equal those of single rays bit for bit.
 #pragma once
 #include "accel/leaf_projection.h"
 
@@ -53,7 +53,7 @@ inline Location<D> locate(const ExactTriangle& k, D dx, D dy, D dz) {
   return {w, w.a + w.b + w.c, w.a * z[0] + w.b * z[1] + w.c * z[2]};
 }
 
-// Takes a hit at t, with b and c the unnormalised weights, if it counts. Returns whether it did.
+// Takes a hit at t if it counts; b and c are the unnormalised weights. Returns whether it did.
 inline bool take_hit(Packet* p, int i, float t, double b, double c, double sum, std::uint32_t triangle) {
   if (!(t > 0 && (t < p->t[i] || (t == p->t[i] && triangle < p->triangle[i] && t < p->t_max)))) return false;
   float u = static_cast<float>(b / sum), v = static_cast<float>(c / sum);
@@ -63,7 +63,7 @@ inline bool take_hit(Packet* p, int i, float t, double b, double c, double sum, 
   return true;
 }
 
-// One ray against one triangle with the full test: close to an edge, or if rounding makes decision and weights
+// Tests one ray against one triangle in full: close to an edge, or if rounding makes decision and weights
 // disagree.
 inline bool settle_doubtful(Packet* p, const TriangleBlock& block, int lane, int i) {
   float dx = p->direction_x[i], dy = p->direction_y[i], dz = p->direction_z[i];
@@ -76,7 +76,7 @@ inline bool settle_doubtful(Packet* p, const TriangleBlock& block, int lane, int
   return take_hit(p, i, crossing.t, crossing.b, crossing.c, crossing.sum, block.triangle[lane]);
 }
 
-// One ray that certainly hits the triangle in a lane.
+// Settles one ray that certainly hits the triangle in a lane.
 inline bool settle_ray(Packet* p, const TriangleBlock& block, int lane, int i) {
   double dz = p->direction_z[i];
   const ExactTriangle k = exact_triangle(*p, block, lane);
@@ -87,7 +87,7 @@ inline bool settle_ray(Packet* p, const TriangleBlock& block, int lane, int i) {
   return take_hit(p, i, t, at.weight.b, at.weight.c, at.sum, block.triangle[lane]);
 }
 
-// Several rays; those of the mask pass, and certainly hit unless doubtful.
+// Settles several rays: those in the mask pass, and certainly hit unless doubtful.
 template <int kLanes>
 bool settle_rays(Packet* p, const TriangleBlock& block, int lane, const ExactTriangle& k, int first, unsigned mask,
                  unsigned doubtful) {
@@ -101,7 +101,7 @@ bool settle_rays(Packet* p, const TriangleBlock& block, int lane, const ExactTri
   auto proper = ((zero <= low) & (zero < high)) | ((high <= zero) & (low < zero));  // signs agree, not all zero
   D sum = select(proper, at.sum, D::splat(1));
   F t = narrow(at.depth / (sum * dz)), best = F::load(p->t + first);
-  // As is_close_hit(), or a little beyond: these are settled alone.
+  // Close hits as in is_close_hit(), or slightly beyond: these are settled one by one.
   const F close = F::splat(2 * kCloseHit * static_cast<float>(k.reach));
   unsigned alone = mask & (doubtful | ~bits(proper) | bits(abs(t * direction_z) < close));
   unsigned ahead = mask & ~alone & bits(F::splat(0) < t), nearer = ahead & bits(t < best);

@@ -10,8 +10,8 @@ constexpr std::uint32_t kNoTriangle = 0xFFFFFFFFu;
 
 // Points origin + t·direction with 0 < t < t_max. The direction need not be unit; t is in units of its length. A ray
 // with a non-finite origin or a zero or non-finite direction hits nothing (HARDCASES row 9). A shadow ray can name the
-// triangles on which it begins and ends: these do not block it (occluded() alone looks at them), so that no rounding
-// decides there, and no time is spent on it.
+// triangles on which it begins and ends: these do not block it (only occluded() reads them), so that rounding cannot
+// make them block it and no time is spent on them.
 struct Ray {
   Vec3 origin, direction;
   float t_max;
@@ -51,24 +51,24 @@ inline void set_ray(SegmentPacket* rays, std::uint32_t i, const Ray& ray) {
   rays->t_max[i] = ray.t_max;
 }
 
-// Point of the hit: (1−u−v)·v0 + u·v1 + v·v2.
+// Hit point: (1−u−v)·v0 + u·v1 + v·v2.
 struct Hit {
   float t, u, v;
   std::uint32_t triangle = kNoTriangle;
 };
 
-// Told which pixel is traced, for the rays that an accelerator hands on to it; see temporal/ray_observer.h.
+// Receives the traced pixel and the rays that an accelerator passes on for it; see temporal/ray_observer.h.
 struct RayObserver {
   std::uint16_t column = 0, row = 0;
 };
 
-// Work counters for --aov cost and bench, and who observes the rays; one per thread.
+// Work counters for --aov cost and bench, and the observer of the rays; one per thread.
 struct TraceStats {
   std::uint64_t nodes = 0, triangles = 0;  // nodes of four boxes visited, triangles tested
   RayObserver* observer = nullptr;         // null: none
 };
 
-// Decides whether a candidate hit counts; null accepts all. Must depend on its arguments alone, and on u and v only if
+// Decides whether a candidate hit counts; null accepts all. Must depend only on its arguments, and on u and v only if
 // it reads the point.
 struct HitFilter {
   bool (*accept)(const void* context, std::uint32_t triangle, float u, float v) = nullptr;

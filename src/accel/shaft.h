@@ -52,7 +52,7 @@ struct Bundle {
 
 inline int padded_count(const Bundle& b) { return (b.count + 15) & ~15; }
 
-// Determines how the rays are bundled. False if they neither meet in a point nor run parallel.
+// Determines how the rays are bundled. Returns false if they neither meet in a point nor run parallel.
 inline bool find_middle(Bundle* b) {
   Float4 spread = Float4::splat(0), reach = spread, longest = spread, turn = spread;
   Float4 first[3], end[3];
@@ -94,7 +94,7 @@ inline void set_slack(const Box& bounds, Bundle* b) {
   b->slack += highest(reach) * 0x1p-19f + std::numeric_limits<float>::min();
 }
 
-// Within these depths t neither overflows nor rounds to 0 or to t_max. Excludes denormals, which slow the CPU down.
+// Depths within which t neither overflows nor rounds to 0 or to t_max. Excludes denormals, which slow the CPU down.
 struct CertainDepths {
   Float4 near, far;
 };
@@ -104,7 +104,7 @@ inline CertainDepths certain_depths(Float4 t_max, Float4 direction_z) {
   return {(size + Float4::splat(1)) * tiny, select(tiny <= far, far, Float4::splat(0))};
 }
 
-// Windows of the groups, of the blocks and of all rays.
+// Sets the windows of the groups, of the blocks and of all rays.
 inline void set_windows(Bundle* b) {
   constexpr Window kNowhere = {1e30f, -1e30f, 1e30f, -1e30f};
   b->all_depth = -kInfinity;
@@ -124,7 +124,7 @@ inline void set_windows(Bundle* b) {
 }
 
 // Computes everything from axes, filter, count, place and the padded origin, direction and t_max, for rays of one class
-// with valid origins. False if they form no bundle.
+// with valid origins. Returns false if they form no bundle.
 inline bool prepare_bundle(const Box& bounds, Bundle* b) {
   if (!find_middle(b)) return false;
   set_slack(bounds, b);
@@ -162,7 +162,7 @@ struct Rectangles4 {
   Float4 x_low, x_high, y_low, y_high, near, far;
 };
 
-// The children of a node.
+// Projects the children of a node.
 inline Rectangles4 project_children(const Bundle& b, const BvhNode& node) {
   auto row = [&](int side, int axis, int k) {
     return Float4::load(node.bounds[side + axis]) - Float4::splat(b.middle[k]);

@@ -1,9 +1,9 @@
-// The rays of a bundle against a few leaves. Part of the kernels: see bvh_shaft.h.
+// Tests the rays of a bundle against a few leaves. Part of the kernels: see bvh_shaft.h.
 //
-// First find which rays pass through the box of which leaf; then run the float test of cross_triangle() on these: four
-// triangles of a leaf and kLanes/4 rays at once, or one triangle and kLanes rays, whichever takes fewer tests; last
-// settle the remaining doubts with the full test. The loops do not wait for each other's results, as they would leaf by
-// leaf.
+// First finds which rays pass through the box of which leaf; then runs the float test of cross_triangle() on these:
+// four triangles of a leaf and kLanes/4 rays at once, or one triangle and kLanes rays, whichever takes fewer tests;
+// last settles the remaining doubts with the full test. The loops do not wait for each other's results, as they would
+// leaf by leaf.
 #pragma once
 #include "accel/leaf_projection.h"
 #include "accel/shaft.h"
@@ -12,7 +12,7 @@ namespace pocketray {
 inline namespace POCKETRAY_ISA {
 
 constexpr int kShaftLeaves = 8;  // searched at once
-constexpr int kFewTests = 6;     // tests of four triangles of a leaf: so few are faster than meet_window()
+constexpr int kFewTests = 6;     // tests of four triangles of a leaf: up to this many are faster than meet_window()
 
 struct ShaftBatch {
   int count = 0;
@@ -55,7 +55,7 @@ inline unsigned meet_window(const Bundle& b, const TriangleBlock& block) {
   return bits((zero <= high_min) | (low_max <= zero));
 }
 
-// Tests that rays take if each test has four triangles: the rays of a mask of kLanes bits, by kLanes/4.
+// Number of tests of four triangles for the rays of a mask of kLanes bits: one per kLanes/4 rays.
 template <int kLanes>
 int tests_by_rays(unsigned rays) {
   constexpr int kAtOnce = kLanes / 4;
@@ -65,7 +65,7 @@ int tests_by_rays(unsigned rays) {
   return count;
 }
 
-// The rays of a mask of kLanes bits pass through the box of a leaf.
+// The rays of a mask of kLanes bits that pass through the box of a leaf.
 struct ShaftTest {
   std::uint8_t leaf, first;  // first ray of the mask
   std::uint16_t rays;
@@ -115,7 +115,7 @@ int list_shaft_tests(const Tree& bvh, const Bundle& b, ShaftBatch* leaves, Shaft
   return count;
 }
 
-// A bit for each lane: a triangle and a segment.
+// Masks with a bit per lane: a triangle and a segment.
 struct ShaftPassing {
   unsigned pass;     // a hit that counts is possible
   unsigned sure;     // certain
@@ -144,7 +144,7 @@ class ShaftCrossings {
 
  private:
   F limited(F at) const { return max(min(at, along_), F::splat(0) - along_); }
-  // Whether a value with an error below `bound` certainly has the sign of the sum.
+  // Returns whether a value with an error below `bound` certainly has the sign of the sum.
   auto agrees(F value, F bound) const {
     F zero = F::splat(0);
     return ((error_ < high_) & (bound < value)) | ((low_ < zero - error_) & (value < zero - bound));
@@ -153,8 +153,8 @@ class ShaftCrossings {
   F low_, high_, along_, error_, bound_, sum_, depth_;
 };
 
-// Crossings beyond the end of a segment cost less in float than to locate: 3 % of a frame of seesaw. But the values
-// must be kept at hand, which costs a Cortex-A7 2 % of most frames.
+// Crossings beyond the end of a segment are cheaper to reject in float than to locate: 3 % of a frame of seesaw. But
+// keeping the values at hand costs a Cortex-A7 2 % of most frames.
 #if defined(__arm__)
 constexpr bool kPlacesEnds = false;
 #else
@@ -162,7 +162,7 @@ constexpr bool kPlacesEnds = true;
 #endif
 
 // The float test of cross_triangle(), and conclusions from the triangles' depths. ray() returns the lanes' values from
-// a row of the bundle, vertex() those of a vertex along an axis.
+// a row of the bundle, vertex() a vertex's values along an axis.
 template <class F, class Ray, class Vertex>
 ShaftPassing test_lanes(const Bundle& b, Ray ray, Vertex vertex) {
   F origin_x = ray(b.origin[0]), origin_y = ray(b.origin[1]), origin_z = ray(b.origin[2]);
@@ -192,7 +192,7 @@ ShaftPassing test_lanes(const Bundle& b, Ray ray, Vertex vertex) {
   return {pass, sure & pass, crosses & pass};
 }
 
-// kLanes/4 rays from `first` on against the four triangles of a leaf; lane 4 i + k has ray i and triangle k.
+// Tests kLanes/4 rays from `first` on against the four triangles of a leaf; lane 4 i + k has ray i and triangle k.
 template <int kLanes>
 ShaftPassing test_leaf_triangles(const Bundle& b, const TriangleBlock& block, int first) {
   using F = typename Lanes<kLanes>::Floats;
@@ -201,7 +201,7 @@ ShaftPassing test_leaf_triangles(const Bundle& b, const TriangleBlock& block, in
       [&](int k, int axis) { return F::repeat(Float4::load(block.vertex[k][axis])); });
 }
 
-// kLanes rays from `first` on against one triangle.
+// Tests kLanes rays from `first` on against one triangle.
 template <int kLanes>
 ShaftPassing test_rays_of(const Bundle& b, const TriangleBlock& block, int triangle, int first) {
   using F = typename Lanes<kLanes>::Floats;
@@ -210,8 +210,8 @@ ShaftPassing test_rays_of(const Bundle& b, const TriangleBlock& block, int trian
       [&](int k, int axis) { return F::splat(block.vertex[k][axis][triangle]); });
 }
 
-// Whether a triangle that may cross a segment blocks it, given what is known of the lane that tested both. A filter
-// that does not read the point is asked first: its answer is cheaper than the full test.
+// Returns whether a triangle that may cross a segment blocks it, given the result of the lane that tested both. A
+// filter that does not read the point is asked first, because it is cheaper than the full test.
 inline bool blocks_segment(const Bundle& b, const TriangleBlock& block, int triangle, int i, ShaftPassing found,
                            int lane) {
   const bool early = b.filter && !b.filter->reads_point;
@@ -233,7 +233,7 @@ inline bool blocks_segment(const Bundle& b, const TriangleBlock& block, int tria
 inline bool is_open(const Bundle& b, int i) { return b.open >> i & 1; }
 inline void close_ray(Bundle* b, int i) { b->open &= ~(std::uint64_t(1) << i); }
 
-// Closes the rays that are blocked by four triangles; lane 4 i + k has ray first + i and triangle k.
+// Closes the rays blocked by four triangles; lane 4 i + k has ray first + i and triangle k.
 inline void settle_leaf_triangles(Bundle* b, const TriangleBlock& block, ShaftPassing found, int first) {
   if (!b->filter)
     for (unsigned sure = found.sure; sure; sure &= sure - 1) close_ray(b, first + __builtin_ctz(sure) / 4);
@@ -243,7 +243,7 @@ inline void settle_leaf_triangles(Bundle* b, const TriangleBlock& block, ShaftPa
   }
 }
 
-// Closes the rays that are blocked by one triangle; lane i has ray first + i.
+// Closes the rays blocked by one triangle; lane i has ray first + i.
 inline void settle_rays_of(Bundle* b, const TriangleBlock& block, int triangle, ShaftPassing found, int first) {
   if (!found.pass) return;
   if (!b->filter || !b->filter->reads_point) {

@@ -26,8 +26,8 @@ struct alignas(16) TriangleBlock {
 };
 static_assert(sizeof(TriangleBlock) == 160, "nine rows of floats and one of ids");
 
-// Whether a triangle can be hit at all: indices in range, vertices within kCoordinateMax, corners not collinear. All
-// accelerators skip the others.
+// Returns whether a triangle can be hit at all: indices in range, vertices within kCoordinateMax, corners not
+// collinear. All accelerators skip the others.
 inline bool has_valid_vertices(Array<const Vec3> positions, const Triangle& triangle) {
   for (std::uint32_t vertex : triangle.vertices()) {
     if (vertex >= positions.count) return false;
@@ -53,7 +53,7 @@ struct ShearedRay {
   float shear_x, shear_y;  // eq. (2) of the paper, without S_z: t is computed separately
 };
 
-// Origins beyond this hit nothing; within it no product of the test overflows.
+// Rays with origins beyond this hit nothing; within it, no product of the test overflows.
 constexpr float kOriginMax = 4 * kCoordinateMax;
 
 inline bool has_valid_origin(const Vec3& origin) {
@@ -61,7 +61,7 @@ inline bool has_valid_origin(const Vec3& origin) {
   return o.x <= kOriginMax && o.y <= kOriginMax && o.z <= kOriginMax;
 }
 
-// False if the ray cannot hit anything: origin not finite or beyond kOriginMax, direction zero or not finite.
+// Returns false if the ray cannot hit anything: origin not finite or beyond kOriginMax, direction zero or not finite.
 inline bool make_sheared_ray(const Ray& ray, ShearedRay* result) {
   Vec3 d = abs(ray.direction);
   if (!has_valid_origin(ray.origin)) return false;
@@ -110,8 +110,8 @@ struct Crossing {
   float t;
 };
 
-// A ray that begins on a triangle's plane does not hit it: t would be the rounding of 0. Close hits, compared with the
-// largest depth of a vertex, are asked whether that is so. Rounding of t grows towards grazing rays, but stays below.
+// A ray that begins on a triangle's plane does not hit it: t would be a rounded 0. Close hits, compared with the
+// largest depth of a vertex, are tested for this. Rounding of t grows towards grazing rays, but stays below this limit.
 constexpr float kCloseHit = 0x1p-16f;
 static_assert(kCloseHit > 0x1p-20f, "beyond the rounding of t and of depths");
 inline bool is_close_hit(float t, float direction_z, double az, double bz, double cz) {
@@ -121,8 +121,8 @@ inline bool is_close_hit(float t, float direction_z, double az, double bz, doubl
   return std::fabs(t * direction_z) < kCloseHit * (farther > c ? farther : c);
 }
 
-// Whether the origin lies on the plane of vertices relative to it, in the order of the ray's axes: their determinant is
-// less than its rounding error.
+// Returns whether the origin lies on the plane of vertices relative to it, in the order of the ray's axes: their
+// determinant is less than its rounding error.
 __attribute__((noinline)) inline bool is_on_plane(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
   double determinant = 0, size = 0;
   for (int k = 0; k < 3; ++k) {
@@ -132,7 +132,7 @@ __attribute__((noinline)) inline bool is_on_plane(const Vec3d& a, const Vec3d& b
   }
   return std::fabs(determinant) <= 0x1p-49 * size;
 }
-// Whether a close hit is none. A triangle that lies all ahead is not judged, as tests in float may count it as hit.
+// Returns whether a close hit is void. Triangles entirely ahead are exempt: float tests may count them as hit.
 inline bool begins_on_plane(float direction_z, const Vec3d& a, const Vec3d& b, const Vec3d& c) {
   const double ahead = direction_z < 0 ? -1 : 1;
   return !(a.z * ahead > 0 && b.z * ahead > 0 && c.z * ahead > 0) && is_on_plane(a, b, c);
@@ -154,7 +154,7 @@ inline Crossing place_crossing(const ShearedRay& ray, const Vec3& a, const Vec3&
   return {w.b, w.c, sum, t};
 }
 
-// Whether and where the ray crosses the triangle a, b, c. t may have any sign or be infinite; the caller bounds it.
+// Tests whether and where the ray crosses the triangle. t may have any sign or be infinite; the caller bounds it.
 inline bool cross_triangle(const ShearedRay& ray, const Vec3& a, const Vec3& b, const Vec3& c, Crossing* crossing) {
   float ox = ray.origin[ray.kx], oy = ray.origin[ray.ky], oz = ray.origin[ray.kz];
   float az = a[ray.kz] - oz, bz = b[ray.kz] - oz, cz = c[ray.kz] - oz;
@@ -169,7 +169,7 @@ inline bool cross_triangle(const ShearedRay& ray, const Vec3& a, const Vec3& b, 
   }
   EdgeValues<double> w = exact_weights(ray, a, b, c);
   if (signs_differ(w) || all_zero(w)) {
-    // A ray along the plane it begins on would hit about its origin by the rounding of its direction.
+    // A ray along the plane on which it begins would hit near its origin through rounding of its direction.
     if (begins_on_plane(ray.direction[ray.kz], from_origin(ray, a), from_origin(ray, b), from_origin(ray, c)))
       return false;
     w = edge_values<double>(ax, ay, bx, by, cx, cy);
@@ -178,7 +178,7 @@ inline bool cross_triangle(const ShearedRay& ray, const Vec3& a, const Vec3& b, 
   return true;
 }
 
-// The same for a ray whose float edge functions are known to have one sign, none of them zero.
+// cross_triangle() for a ray whose float edge functions are known to have one sign, none of them zero.
 inline bool cross_decided(const ShearedRay& ray, const Vec3& a, const Vec3& b, const Vec3& c, Crossing* crossing) {
   EdgeValues<double> w = exact_weights(ray, a, b, c);
   if (signs_differ(w) || all_zero(w)) return cross_triangle(ray, a, b, c, crossing);
@@ -186,7 +186,7 @@ inline bool cross_decided(const ShearedRay& ray, const Vec3& a, const Vec3& b, c
   return true;
 }
 
-// The same as cross_triangle(), as a Hit. hit->triangle is unchanged, and so is all of hit without a crossing.
+// cross_triangle() that returns a Hit. hit->triangle is unchanged, and so is all of hit without a crossing.
 inline bool intersect_triangle(const ShearedRay& ray, const Vec3& a, const Vec3& b, const Vec3& c, Hit* hit) {
   Crossing crossing;
   if (!cross_triangle(ray, a, b, c, &crossing)) return false;

@@ -10,8 +10,8 @@ namespace pocketray {
 
 constexpr std::size_t kArenaAlignment = 64;  // a cache line; every allocation starts on one
 
-// Planned sizes may exceed what a 32-bit CPU can address. Sums and products saturate at SIZE_MAX, which no block holds,
-// instead of wrapping around to a size that seems to fit.
+// Planned sizes may exceed the address space of a 32-bit CPU. Sums and products saturate at SIZE_MAX, which no block
+// holds, instead of wrapping around to a size that seems to fit.
 constexpr std::size_t size_sum(std::size_t a, std::size_t b) { return a > SIZE_MAX - b ? SIZE_MAX : a + b; }
 constexpr std::size_t to_size(std::uint64_t bytes) {
   return bytes > SIZE_MAX ? SIZE_MAX : static_cast<std::size_t>(bytes);
@@ -45,7 +45,7 @@ std::size_t arena_free(const Arena& arena);
 // Aborts when the arena is full: sizes are planned, so that is a programmer error. Memory is not cleared. Sizes are 64
 // bits wide on every CPU, so that a count from a file or a server is checked before it is narrowed to size_t.
 void* arena_allocate(Arena* arena, std::uint64_t bytes);
-// The same, but returns null when the arena is full, for callers that report a Status.
+// arena_allocate() that returns null when the arena is full, for callers that report a Status.
 void* arena_try_allocate(Arena* arena, std::uint64_t bytes);
 
 inline std::size_t arena_mark(const Arena& arena) { return arena.used; }

@@ -1,5 +1,5 @@
-// CHECK guards against programmer errors: prints both operands and aborts. It stays in release builds; keep it out of
-// inner loops.
+// CHECK guards against programmer errors: it prints both operands and aborts. It stays in release builds; keep it out
+// of inner loops.
 #pragma once
 #include <cstdio>
 #include <cstdlib>

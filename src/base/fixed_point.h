@@ -5,7 +5,7 @@
 
 namespace pocketray {
 
-// The exponent of a scale is the biased one of the largest coordinate. Below this, denormals would count.
+// A scale's exponent is the biased exponent of the largest coordinate. Below this, denormals would matter.
 constexpr int kFixedExponentMin = 32;
 constexpr std::int32_t kFixedMax = (1 << 29) - 1;
 
@@ -31,7 +31,7 @@ inline std::uint32_t magnitude(std::int32_t a) {
   return a < 0 ? 0 - bits : bits;
 }
 inline std::int64_t product(std::int32_t a, std::int32_t b) { return static_cast<std::int64_t>(a) * b; }
-// value · fraction: low by less than 2.
+// value · fraction; too low by less than 2.
 inline std::int32_t part(std::int32_t value, std::int32_t fraction) {
   return 2 * static_cast<std::int32_t>(product(value, fraction) >> 32);
 }

@@ -12,7 +12,7 @@ constexpr float kPiF = 3.14159265f;
 constexpr double radians(double degrees) { return degrees * (kPi / 180.0); }
 
 double det_sin(double x);   // |error| ≤ 3e-16 for |x| ≤ 1e5, growing to 1e-7 at 1e9; the value stays in [-1, 1]
-double det_cos(double x);   // as det_sin
+double det_cos(double x);   // as for det_sin
 double det_acos(double x);  // |error| ≤ 7e-16, relative error ≤ 4e-16 near 1; x is clamped to [-1, 1]
 double det_exp(double x);   // relative error ≤ 4e-16; 0 below -700, +Inf above 709
 double det_log(double x);   // relative error ≤ 7e-16; -Inf at 0, NaN below
@@ -21,8 +21,8 @@ double det_log(double x);   // relative error ≤ 7e-16; -Inf at 0, NaN below
 // NaN; x < 0 gives NaN.
 float det_pow(float x, float y);
 
-// The next float above x if `direction` is positive, below x if it is negative. NaN, and infinities at the end of that
-// direction, stay.
+// Next float above x if `direction` is positive, below x if it is negative. NaN, and the infinity in that direction,
+// stay.
 inline float next_float_towards(float x, float direction) {
   std::uint32_t word;
   std::memcpy(&word, &x, sizeof word);

@@ -1,4 +1,4 @@
-// Instruction sets beyond the build's baseline, chosen at run time.
+// Instruction sets beyond the build's baseline, selected at run time.
 //
 // Code that profits from them is a *kernel*: headers whose code lies in `namespace pocketray::POCKETRAY_ISA`. Each
 // instruction set has a source that defines POCKETRAY_ISA, includes them and is compiled with that set's options
@@ -17,8 +17,8 @@
 
 namespace pocketray {
 
-// Each includes the ones before it. kBaseline is what the compiler options allow, SSE2 on x86-64, but on 32-bit ARM
-// without NEON's arithmetic, which flushes denormals.
+// Each includes the ones before it. kBaseline is what the compiler options allow: SSE2 on x86-64; on 32-bit ARM without
+// NEON's arithmetic, which flushes denormals.
 #if defined(__x86_64__)
 enum class Isa { kBaseline, kAvx2, kAvx512 };
 constexpr int kIsaCount = 3;
@@ -30,9 +30,9 @@ enum class Isa { kBaseline };
 constexpr int kIsaCount = 1;
 #endif
 
-// The widest that this CPU supports and this build has kernels for.
+// Widest set that this CPU supports and this build has kernels for.
 Isa best_isa();
-// The one in use: best_isa() unless another was selected.
+// Set in use: best_isa() unless another was selected.
 Isa active_isa();
 // For tests and measurements, while nothing is traced; must not exceed best_isa().
 void select_isa(Isa isa);

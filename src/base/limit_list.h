@@ -1,5 +1,5 @@
-// Quantities that reach the renderer by several ways: command line, library, scene file, message. Each has one range,
-// in this table, and every way checks it with within(): all accept the same values, and none lets in a NaN or an
+// Quantities that reach the renderer in several ways: command line, library, scene file, message. Each has one range,
+// in this table, and every way checks it with within(): all accept equal values, and none lets in a NaN or an
 // infinity.
 #pragma once
 #include "base/fmath.h"

@@ -4,12 +4,12 @@
 
 namespace pocketray {
 
-// Size of the memory block: the smallest handheld's, and 64 GiB or half of a 32-bit address space.
+// Size of the memory block: from the smallest handheld's to 64 GiB or half of a 32-bit address space.
 constexpr std::uint64_t kMemoryBytesMin = 1u << 16;
 constexpr std::uint64_t kMemoryBytesMax = sizeof(void*) == 4 ? 0x7FFFFFFFu : std::uint64_t(1) << 36;
 constexpr std::uint32_t kImageSideMax = 8192;          // pixels; spans keep their columns in 16 bits
 constexpr std::uint32_t kTriangleCountMax = 1u << 26;  // leaves room for tag bits in 32-bit child references
-// Of a triangle's words; the bits above hold a share of its material index.
+// Bits for a vertex index in a triangle's words; the bits above hold a part of its material index.
 constexpr std::uint32_t kVertexIndexBits = 26;
 constexpr std::uint32_t kVertexCountMax = 1u << kVertexIndexBits;
 constexpr std::uint32_t kMaterialCountMax = 1u << 16;
@@ -22,7 +22,7 @@ constexpr std::uint32_t kLightCountMax = 4096;       // lights of a scene
 constexpr std::uint32_t kPointLightCountMax = 4096;  // after area lights have become points
 constexpr std::uint32_t kPointsPerAreaLightMax = 256;
 constexpr std::uint32_t kLightCornerMax = 8;  // of flat lamps in closed form
-// Fewer lights are all tested for shadows. Chosen: among few lights, hardly any are weak enough to go untested.
+// With fewer lights, all are tested for shadows. Chosen: among few lights, hardly any are weak enough to skip.
 constexpr std::uint32_t kSelectedLightsMin = 16;
 constexpr std::uint32_t kVirtualLightMax = 512;  // of instant radiosity
 constexpr std::uint32_t kEnvironmentLightMax = 256;

@@ -1,4 +1,4 @@
-// Makes text from files and peers safe for a terminal: question marks replace anything that the terminal would take for
+// Makes text from files and peers safe for a terminal: question marks replace anything that the terminal would treat as
 // a command or that would disguise the text.
 #pragma once
 #include <cstddef>

@@ -24,7 +24,7 @@ inline Rng make_rng(std::uint64_t seed, std::uint64_t stream = 0) {
   next_u32(&rng);
   return rng;
 }
-// Uniform in [0, 1), 24 bits.
+// Uniform in [0, 1), with 24 bits.
 inline float next_float(Rng* rng) { return static_cast<float>(next_u32(rng) >> 8) * 0x1p-24f; }
 inline double next_double(Rng* rng) {
   std::uint64_t high = next_u32(rng) >> 5, low = next_u32(rng) >> 6;

@@ -12,7 +12,7 @@
 // distances along a ray: a negative result is either of the negative operands. is_later() is > if at least one operand
 // is not negative. No operand of these three may be −0 or NaN. word_outside() returns the one word of four (aligned to
 // 16) whose lane is not in the mask; there must be exactly one. product_less() is a·b − c, rounded once or twice,
-// whichever is faster, and reciprocal() is 1/a within 3u (u = 2^-24): for bounds that are wide enough, never for results.
+// whichever is faster, and reciprocal() is 1/a within 3u (u = 2^-24): for bounds that are wide enough, not for results.
 //
 // load_points() loads four points of three floats each into vectors of their x, y and z.
 #pragma once
@@ -31,7 +31,7 @@
 namespace pocketray {
 inline namespace POCKETRAY_ISA {
 
-// Vectors of so many lanes.
+// Vectors of this many lanes.
 template <int kLanes>
 struct Lanes;
 template <>

@@ -1,7 +1,7 @@
 // Four floats, NEON of 32-bit ARM; doubles one after the other. See simd.h.
 //
 // This unit takes denormal operands for 0 and returns 0 in place of denormal results; all else rounds as IEEE
-// prescribes. Division is left to the VFP, which does denormals. min() and max() return NaN for NaN.
+// prescribes. Division is left to the VFP, which handles denormals. min() and max() return NaN for NaN.
 #pragma once
 #include <arm_neon.h>
 

@@ -1,7 +1,7 @@
 // Division, square root and comparison of floats and division of doubles in integers, rounded as IEEE prescribes: for
 // CPUs without floating point, a fraction of the instructions of the compiler's and the C library's own. Numbers are
-// given by their bits.
-// soft_float_arm.cpp puts them in the place of those; the tests compare them with the hardware of other CPUs.
+// passed as bits. soft_float_arm.cpp substitutes them for those; the tests compare them with the hardware of other
+// CPUs.
 #pragma once
 #include <cstdint>
 
@@ -32,7 +32,7 @@ constexpr SoftTables make_soft_tables() {
 }
 constexpr SoftTables kSoftTables = make_soft_tables();
 
-// a/b. False, and no result, unless operands and result are normal numbers.
+// a/b. Returns false, and no result, unless operands and result are normal numbers.
 inline bool soft_divide(std::uint32_t a, std::uint32_t b, std::uint32_t* result) {
   std::uint32_t exponent_a = a >> 23 & 255, exponent_b = b >> 23 & 255;
   if (exponent_a - 1 >= 254 || exponent_b - 1 >= 254) return false;
@@ -56,7 +56,7 @@ inline bool soft_divide(std::uint32_t a, std::uint32_t b, std::uint32_t* result)
   return true;
 }
 
-// a/b of doubles. False, and no result, unless operands and result are normal numbers.
+// a/b of doubles. Returns false, and no result, unless operands and result are normal numbers.
 inline bool soft_divide(std::uint64_t a, std::uint64_t b, std::uint64_t* result) {
   constexpr std::uint64_t kOne = std::uint64_t{1} << 52;
   std::uint32_t exponent_a = static_cast<std::uint32_t>(a >> 52) & 2047;
@@ -88,7 +88,7 @@ inline bool soft_divide(std::uint64_t a, std::uint64_t b, std::uint64_t* result)
   return true;
 }
 
-// √a. False unless a is a positive normal number.
+// √a. Returns false unless a is a positive normal number.
 inline bool soft_root(std::uint32_t a, std::uint32_t* result) {
   if (a - 0x800000 >= 0x7F000000) return false;
   std::uint32_t m = (a & 0x7FFFFF) | 0x800000, odd = ~a >> 23 & 1;  // the exponent less its bias is odd
@@ -109,7 +109,7 @@ inline bool soft_root(std::uint32_t a, std::uint32_t* result) {
 }
 
 inline bool soft_is_nan(std::uint32_t a) { return a << 1 > 0xFF000000u; }
-// Of numbers: −0 equals 0.
+// a < b for numbers: −0 equals 0.
 inline bool soft_less(std::uint32_t a, std::uint32_t b) {
   if (static_cast<std::int32_t>(a & b) < 0) return a > b;
   return static_cast<std::int32_t>(a) < static_cast<std::int32_t>(b) && (a | b) << 1;

@@ -1,5 +1,5 @@
-// Takes the place of functions of the compiler's and the C library: the linker's --wrap leads their callers here. What
-// is rare stays with them.
+// Replaces functions of the compiler's and the C library: the linker's --wrap redirects their callers here. Rare cases
+// call the originals.
 #if defined(__SOFTFP__)
 #include "base/soft_float.h"
 

@@ -61,7 +61,7 @@ inline NormalTransform normal_transform(const Transform& t) {
   double sign = dot(a, bc) < 0 ? -1.0 : 1.0;
   return {{bc * sign, cross(c, a) * sign, cross(a, b) * sign}};
 }
-// Unit; the zero vector where n is zero or is flattened to zero.
+// Unit vector; the zero vector where n is zero or is flattened to zero.
 inline Vec3 transform_normal(const NormalTransform& t, const Vec3& n) {
   Vec3d m = {n.x, n.y, n.z};
   Vec3d u = normalize(Vec3d{dot(t.row[0], m), dot(t.row[1], m), dot(t.row[2], m)});
@@ -69,7 +69,7 @@ inline Vec3 transform_normal(const NormalTransform& t, const Vec3& n) {
 }
 inline Vec3 transform_normal(const Transform& t, const Vec3& n) { return transform_normal(normal_transform(t), n); }
 
-// Whether the linear part can be inverted within float range; HARDCASES row 27 refuses transforms that cannot.
+// Returns whether the linear part can be inverted within float range; HARDCASES row 27 refuses transforms that cannot.
 inline bool is_invertible(const Transform& t) {
   double d = std::fabs(determinant(t));
   return d >= std::numeric_limits<float>::min() && d <= std::numeric_limits<float>::max();

@@ -5,25 +5,25 @@
 
 namespace pocketray {
 
-// The share of uniform light that a lobe reflects to the viewer: once, from about the mirrored direction; and scattered
-// more than once, from all directions alike.
+// Share of uniform light that a lobe reflects to the viewer: light reflected once, from around the mirrored direction;
+// and light scattered more than once, from all directions alike.
 struct BrdfAlbedo {
   Vec3 once, scattered;
 };
 
-// What a lobe knows of the surface at a point.
+// The surface at a point, as lobes see it.
 template <class T>
 struct LobeFrameT {
   Vec3T<T> normal;  // unit
-  // Perpendicular to the normal; as long as the grain is strong, 0 to 1. Only lobes with a grain read it; in a Surface,
-  // it is set with Effect::anisotropy.
+  // Perpendicular to the normal; its length is the grain's strength, 0 to 1. Only lobes with a grain read it; in a
+  // Surface, it is set with Effect::anisotropy.
   Vec3T<T> grain;
 };
 using LobeFrame = LobeFrameT<float>;
 using LobeFrameD = LobeFrameT<double>;
 
-// A lobe in two parts, see linear_lobe.h: a sharp one, which times the light's cosine is `albedo` times a distribution
-// of directions, given by the rows of the matrix M⁻¹ that makes a power of the z axis' cosine of it; and the rest.
+// A lobe in two parts, see linear_lobe.h: a sharp part, which times the light's cosine is `albedo` times a distribution
+// of directions (a power of the z axis' cosine after transformation by M⁻¹, whose rows are given); and the rest.
 template <class T>
 struct LobePartsT {
   Vec3T<T> x, y, z;
@@ -37,18 +37,18 @@ using LobePartsD = LobePartsT<double>;
 // Arguments are as in BrdfInfo.
 struct LinearForm {
   std::uint32_t power;  // of the cosine, odd
-  // False: the lobe cannot be divided for that material or viewer.
+  // Returns false if the lobe cannot be divided for that material or viewer.
   bool (*divide)(const Material& material, const Vec3& specular, const Vec3& diffuse, const LobeFrame& frame,
                  const Vec3& to_viewer, LobeParts* parts);
   bool (*divide_exactly)(const Material& material, const Vec3d& specular, const Vec3d& diffuse, const LobeFrameD& frame,
                          const Vec3d& to_viewer, LobePartsD* parts);
-  // The value of the rest for light at a cosine; null: it is LobeParts::diffuse.
+  // Value of the rest for light at a cosine; null: it is LobeParts::diffuse.
   Vec3 (*rest)(const LobeParts& parts, float cos_light);
   Vec3d (*exact_rest)(const LobePartsD& parts, double cos_light);
 };
 
-// All vectors but the grain are unit. Values and densities are in 1/sr. `specular` is the material's at the point,
-// tinted by texture and vertex colour; it is at most Material::specular.
+// All vectors but the grain are unit vectors. Values and densities are in 1/sr. `specular` is the material's
+// reflectance at the point, tinted by texture and vertex colour; it is at most Material::specular.
 struct BrdfInfo {
   const char* name;
   // Both directions point away from the surface, on the side of the normal.
@@ -57,17 +57,17 @@ struct BrdfInfo {
                 const Vec3& to_viewer, const Vec3& to_light);
   // Least upper bound of the lobe × the light's cosine over all directions and grains; the cut-off relies on it.
   Vec3 (*peak)(const Material& material);
-  // The same value in double precision, for the reference.
+  // value() in double precision, for the reference.
   Vec3d (*exact_value)(const Material& material, const Vec3d& specular, const Vec3d& diffuse, const LobeFrameD& frame,
                        const Vec3d& to_viewer, const Vec3d& to_light);
-  // Samples a direction by importance from numbers uniform in [0, 1); it may point below the surface. The density is
-  // over the sphere, positive wherever the value is.
+  // Importance-samples a direction from numbers uniform in [0, 1); it may point below the surface. The density is over
+  // the sphere, positive wherever the value is.
   Vec3d (*sample)(const Material& material, const LobeFrameD& frame, const Vec3d& to_viewer, double u, double v);
   double (*density)(const Material& material, const LobeFrameD& frame, const Vec3d& to_viewer, const Vec3d& to_light);
   // Null: the lobe reflects lights only.
   BrdfAlbedo (*albedo)(const Material& material, const Vec3& specular, float cos_viewer);
   float diffuse_max;  // upper bound of what remains of `diffuse`, as a factor
-  // The same lobe with a grain, which stands in where there is one; null: it has none. No material names that lobe.
+  // This lobe with a grain, which replaces it where there is one; null: it has none. No material names that lobe.
   const BrdfInfo* with_grain;
   const LinearForm* linear = nullptr;  // null: it has none
 };

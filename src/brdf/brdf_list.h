@@ -15,10 +15,10 @@ constexpr std::uint32_t kBrdfCount = sizeof kBrdfList / sizeof kBrdfList[0];
 static_assert(kBrdfCount <= kBrdfCountMax, "raise it in base/limits.h");
 
 // Mean albedo of Phong's lobe as a share of `specular`: a sharp lobe reflects specular · cos θ to a viewer at θ,
-// because the light comes from that angle; over a convex body, as seen from anywhere, the mean of cos θ is 2/3.
+// because the light comes from that angle; over a convex body, seen from anywhere, the mean of cos θ is 2/3.
 constexpr float kPhongAlbedo = 2.0f / 3;
 
-// Whether the material's lobe has a grain, which takes texture coordinates or tangents.
+// Returns whether the material's lobe has a grain, which needs texture coordinates or tangents.
 inline bool has_grain(const Scene& scene, std::uint32_t material) {
   if (scene.grains.empty() || (scene.uvs.empty() && scene.tangents.empty())) return false;
   if (!kBrdfList[scene.materials[material].brdf]->with_grain) return false;

@@ -1,7 +1,7 @@
 // A clear coat over a material, layered as KHR_materials_clearcoat has it: a dielectric of index 1.5 over the base.
 //   seen = base × (1 − strength × F(n·v)) + strength × coat,  F(x) = 0.04 + 0.96 (1 − x)⁵ [Schlick 1994]
-// for the coat's own normal n. Of roughness r, the coat is in parts a mirror, as metallic_roughness.h has it, here by
-// Fresnel: k F(n·v) with k = max(0, 1 − r/0.3)²; the rest is 1 − k of the GGX lobe of α = r².
+// for the coat's own normal n. A coat of roughness r is partly a mirror, as in metallic_roughness.h, here by Fresnel: k
+// F(n·v) with k = max(0, 1 − r/0.3)²; the rest is 1 − k of the GGX lobe of α = r².
 #pragma once
 #include <cmath>
 
@@ -17,14 +17,14 @@ T coat_fresnel(T cosine) {
   return least + (1 - least) * (rise * rise * (rise * rise) * rise);
 }
 
-// The share k of the mirror.
+// Share k of the mirror.
 template <class T>
 T coat_mirror_share(T roughness) {
   const T smooth = 1 - roughness / static_cast<T>(0.3);
   return smooth > 0 ? smooth * smooth : 0;
 }
 
-// A material that has the coat's lobe alone, of strength 1.
+// A material that has only the coat's lobe, of strength 1.
 inline Material coat_lobe(float roughness) {
   const float rest = 1 - coat_mirror_share(roughness), reflectance = kCoatReflectance * rest;
   Material m;
@@ -36,11 +36,11 @@ inline Material coat_lobe(float roughness) {
 inline const ClearCoat* coat_of(const Scene& scene, std::uint32_t material) {
   return scene.clear_coats.count && scene.clear_coats[material].strength > 0 ? &scene.clear_coats[material] : nullptr;
 }
-// Whether the coat may have the lobe, and the mirror, somewhere.
+// Returns whether the coat may have the lobe, or the mirror, somewhere.
 inline bool has_lobe(const ClearCoat& coat) { return coat.roughness > 0; }
 inline bool has_mirror(const ClearCoat& coat) { return coat_mirror_share(coat.roughness_low) > 0; }
 
-// Upper bounds of the lobe, as of a material: the lobe grows with the roughness, its peak falls.
+// Upper bounds of the lobe, as for a material: the lobe grows with the roughness, its peak falls.
 inline Material coat_bounds(const ClearCoat& coat) {
   Material m = coat_lobe(coat.roughness);
   m.roughness = coat.roughness_low * coat.roughness_low;

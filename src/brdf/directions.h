@@ -17,7 +17,7 @@ inline void make_basis(const Vec3d& n, Vec3d* tangent, Vec3d* bitangent) {
 // x^y for x in [0, 1].
 inline double unit_power(double x, double y) { return y == 0 ? 1 : x > 0 ? det_exp(y * det_log(x)) : 0; }
 
-// A direction whose density over the sphere is (n + 1)/2π cosⁿ of its angle with the axis.
+// Direction with the density (n + 1)/2π cosⁿ of its angle with the axis, over the sphere.
 inline Vec3d power_cosine_direction(const Vec3d& axis, double n, double u, double v) {
   double cosine = n == 1 ? std::sqrt(1 - u) : unit_power(1 - u, 1 / (n + 1)), phi = 2 * kPi * v;
   double sine = std::sqrt((1 - cosine) * (1 + cosine));

@@ -32,7 +32,7 @@ struct Even {
 
   Even(const Material& material, const LobeFrameT<T>&)
       : square(alpha_of<T>(material) * alpha_of<T>(material)), roughness(static_cast<T>(material.roughness)) {}
-  // sin² + α² cos² for the angle between normal and half vector, as |n × h|² does not cancel near the peak.
+  // sin² + α² cos² for the angle between normal and half vector, since |n × h|² does not cancel near the peak.
   T slope(const Vec3T<T>& normal, const Vec3T<T>& sum, T sum_square) const {
     const Vec3T<T> across = cross(normal, sum);
     const T sine_square = dot(across, across) / sum_square, term = sine_square + square * (1 - sine_square);
@@ -77,7 +77,7 @@ Vec3T<T> scattered(T roughness, T grazing, const Vec3T<T>& specular, T cos_viewe
          (loss * static_cast<T>(1 / kPi) / ggx_between_rows(row, kGgxRows.lost));
 }
 
-// The factor of the diffuse lobe.
+// Factor of the diffuse lobe.
 template <class T>
 T diffuse_passes(const Material& material, T l, T v) {
   const T ior = static_cast<T>(material.ior), root = (ior - 1) / (ior + 1), normal_reflectance = root * root;
@@ -111,8 +111,8 @@ Vec3 value(const Material& material, const Vec3& specular, const Vec3& diffuse, 
   return value_of<Distribution>(material, specular, diffuse, frame, to_viewer, to_light);
 }
 
-// D ≤ 1/π αx αy ≤ 1/πα², and n·l V < 1/2α, which it approaches where n·v ≪ n·l ≪ α. What is scattered more than once
-// is bounded by the most that the lobe loses in any direction.
+// D ≤ 1/π αx αy ≤ 1/πα², and n·l V < 1/2α, which it approaches where n·v ≪ n·l ≪ α. Light scattered more than once is
+// bounded by the largest loss of the lobe in any direction.
 Vec3 peak_of(const Material& material, float roughness) {
   const float alpha = alpha_of<float>(material), square = alpha * alpha, f = material.grazing;
   const Vec3 most = max(material.specular, {f, f, f});
@@ -122,7 +122,7 @@ Vec3 peak_of(const Material& material, float roughness) {
   return (most * (0.5f / kPiF / (square * std::sqrt(square))) + rest) * 1.00001f;  // covers rounding
 }
 Vec3 peak(const Material& material) { return peak_of(material, material.roughness); }
-// What is scattered again grows or falls with the grain's strength: the larger of both ends.
+// Light scattered more than once grows or falls with the grain's strength: takes the larger of both ends.
 Vec3 grained_peak(const Material& material) { return max(peak_of(material, material.roughness), peak_of(material, 1)); }
 
 template <template <class> class Distribution>
@@ -131,7 +131,7 @@ Vec3d exact_value(const Material& material, const Vec3d& specular, const Vec3d& 
   return value_of<Distribution>(material, specular, diffuse, frame, to_viewer, to_light);
 }
 
-// The share of samples for the light scattered more than once: as much as is scattered.
+// Share of samples for light scattered more than once, in proportion to that light.
 double scattered_share(double roughness, double cos_viewer) {
   const GgxCell<double> row = ggx_row(roughness);
   return 1 - ggx_energy(row, ggx_column(cos_viewer));
@@ -145,8 +145,8 @@ GrainAxes<double> axes_of(const Even<double>& d, const LobeFrameD& frame) {
 }
 const GrainAxes<double>& axes_of(const Grained<double>& d, const LobeFrameD&) { return d.axes; }
 
-// In that share, by the cosine. Otherwise mirrors the viewer in a normal visible to it [Dupuy & Benyoub 2023, "Sampling
-// visible GGX normals with spherical caps", listing 1].
+// Samples that share by the cosine. The rest mirrors the viewer in a normal visible to it [Dupuy & Benyoub 2023,
+// "Sampling visible GGX normals with spherical caps", listing 1].
 template <template <class> class Distribution>
 Vec3d sample(const Material& material, const LobeFrameD& frame, const Vec3d& viewer, double u, double v) {
   const Vec3d& normal = frame.normal;
@@ -170,7 +170,7 @@ Vec3d sample(const Material& material, const LobeFrameD& frame, const Vec3d& vie
   return half * (2 * dot(half, to_viewer)) - to_viewer;
 }
 
-// That of the cosine, and that of visible normals, D G₁(v) v·h / n·v, over 4 v·h [Heitz 2018, eq. 17].
+// Mixes the cosine's density and that of visible normals, D G₁(v) v·h / n·v, over 4 v·h [Heitz 2018, eq. 17].
 template <template <class> class Distribution>
 double density(const Material& material, const LobeFrameD& frame, const Vec3d& viewer, const Vec3d& to_light) {
   const Vec3d& normal = frame.normal;
@@ -202,7 +202,7 @@ bool divide(const Material& material, const Vec3T<T>& specular, const Vec3T<T>& 
   return true;
 }
 
-// The diffuse lobe, and what is scattered more than once.
+// The diffuse lobe, and light scattered more than once.
 template <class T>
 Vec3T<T> rest_of(const LobePartsT<T>& parts, T l) {
   return parts.diffuse * (1 - fifth_power(1 - l)) +

@@ -1,7 +1,7 @@
-// The share of uniform light that the GGX lobe reflects to the viewer at once: specular · A + grazing · B [Karis 2013,
-// "Real shading in Unreal Engine 4", split sum], where A + B is the albedo for F = 1 and B that of the rise (1 − v·h)⁵.
-// Tabulated from the lobe's samples; ggx_reflects_the_integral_of_its_value holds it to .035, 5e-3 in the root mean
-// square.
+// Share of uniform light that the GGX lobe reflects to the viewer at once: specular · A + grazing · B [Karis 2013,
+// "Real shading in Unreal Engine 4", split sum], where A + B is the albedo for F = 1 and B belongs to the rise (1 −
+// v·h)⁵. Tabulated from the lobe's samples; ggx_reflects_the_integral_of_its_value holds it to .035, 5e-3 in the root
+// mean square.
 #pragma once
 #include <cmath>
 #include <cstdint>
@@ -192,8 +192,8 @@ T ggx_energy(const GgxCell<T>& row, const GgxCell<T>& column) {
   return ggx_between(row, column, [](const std::uint16_t(&e)[2]) { return e[0] + e[1]; });
 }
 
-// Of each row, what a lobe of F = 1 loses: the mean over the hemisphere, 1 − Ē with Ē = 2 ∫ E(μ) μ dμ = 4 ∫ E t³ dt and
-// t = √μ, in which E is piecewise linear; and the most in any direction.
+// Loss of a lobe of F = 1 per row: the mean over the hemisphere, 1 − Ē with Ē = 2 ∫ E(μ) μ dμ = 4 ∫ E t³ dt and t = √μ,
+// in which E is piecewise linear; and the largest in any direction.
 struct GgxRows {
   double lost[kGgxAlbedoSide] = {}, most_lost[kGgxAlbedoSide] = {};
   constexpr GgxRows() {
@@ -233,7 +233,7 @@ Vec3T<T> ggx_scattered_color(const GgxCell<T>& row, const Vec3T<T>& specular, T 
   return color;
 }
 
-// Of light that the lobe reflects once: the shares that go with the reflectance along the normal and at grazing angles.
+// Shares of light reflected once that scale with the reflectance along the normal and at grazing angles.
 template <class T>
 struct GgxShares {
   T normal, grazing;

@@ -8,7 +8,7 @@
 //   `cot`, where c = cos θ, y likewise over α t; the plane z = 0 is the horizon, turned away from the viewer by k sin
 //   θ;
 // - Phong: z is the mirrored direction, tilted towards the normal by b; x and y are measured in α a and α t.
-// What D has below the horizon is taken off: `albedo` is that of the lobe over the share of D above.
+// The part of D below the horizon is removed: `albedo` is the lobe's, divided by the share of D above.
 #pragma once
 #include <cmath>
 #include <cstdint>
@@ -19,15 +19,15 @@
 
 namespace pocketray {
 
-constexpr float kLinearCosineMin = 0.01f;  // a viewer nearer to the horizon counts as there, in the tables
+constexpr float kLinearCosineMin = 0.01f;  // viewers nearer to the horizon read this table entry
 
-// By how much the peak of D × albedo may exceed the bound of the lobe's; linear_lobe_has_a_bounded_peak.
+// Factor by which the peak of D × albedo may exceed the lobe's bound; linear_lobe_has_a_bounded_peak.
 constexpr float kLinearPeakMax = 1.1f;
 static_assert(kPhongLinearPower % 2 == 1, "odd powers have closed forms without the polygon's solid angle");
 static_assert(kPhongLinearAlphaMax < 0.5626 && sizeof kPhongLinear / sizeof kPhongLinear[0] == 11,
               "√α from 0.1 to 0.75");
 
-// The parameters at a place in a table. Rows: √α from 0.1 in equal steps, below which lobes only get narrower; columns:
+// Interpolates a table's parameters. Rows: √α from 0.1 in equal steps, below which lobes only get narrower; columns:
 // √cos θ from 0.1 to 1.
 template <class T, std::size_t kRows, std::size_t kColumns, std::size_t kCount>
 void find_linear_parameters(const std::uint16_t (&table)[kRows][kColumns][kCount], T step, T alpha, T cosine,
@@ -50,7 +50,7 @@ void find_linear_parameters(const std::uint16_t (&table)[kRows][kColumns][kCount
   }
 }
 
-// The viewer's plane: unit vectors in the surface, away from the viewer and across.
+// Unit vectors in the surface relative to the viewer's plane: away from the viewer and across.
 template <class T>
 struct ViewerPlane {
   Vec3T<T> along, across;
@@ -79,7 +79,7 @@ void set_ggx_lobe(const Vec3T<T>& normal, const ViewerPlane<T>& plane, T alpha, 
   parts->x = (plane.along - normal * middle) * scale;
   parts->y = plane.across * (p[1] / alpha);
   parts->z = normal + plane.along * turn;
-  // M makes (turn, scale) of the horizon's normal, of which D sees a lune.
+  // M turns the horizon's normal into (turn, scale), which cuts a lune out of D.
   *above = (1 + scale / std::sqrt(scale * scale + turn * turn)) / 2;
 }
 

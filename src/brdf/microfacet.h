@@ -1,4 +1,4 @@
-// What lobes of microfacets share: their width, viewers below the horizon, and the grain.
+// Shared by lobes of microfacets: their width, viewers below the horizon, and the grain.
 #pragma once
 #include "brdf/brdf.h"
 #include "brdf/directions.h"
@@ -12,7 +12,7 @@ T alpha_of(const Material& material) {
   return static_cast<T>(material.roughness > kAlphaMin ? material.roughness : kAlphaMin);
 }
 
-// Interpolated normals put some visible points below their horizon: the viewer counts as mirrored in it.
+// Interpolated normals put some visible points below their horizon: the viewer is mirrored at it.
 template <class T>
 Vec3T<T> above_horizon(const Vec3T<T>& normal, const Vec3T<T>& to_viewer) {
   T cosine = dot(normal, to_viewer);
@@ -42,7 +42,7 @@ GrainAxes<T> grain_axes(const LobeFrameT<T>& frame, T alpha) {
   return axes;
 }
 
-// The material with the even lobe of the same area, α = √(αx αy), for what is known of even lobes alone.
+// The material with the isotropic lobe of equal area, α = √(αx αy), for data that exists only for isotropic lobes.
 inline Material evened(const Material& m, const LobeFrame& frame) {
   const GrainAxes<float> axes = grain_axes(frame, m.roughness);
   Material even = m;

@@ -23,14 +23,14 @@ GrainAxes<T> axes_of(const Material& material, const LobeFrameT<T>& frame) {
   return axes;
 }
 
-// The square of the slope of h in widths.
+// Square of the slope of h, in units of the widths.
 template <class T>
 T slope_square(const GrainAxes<T>& axes, const Vec3T<T>& h, T rise) {
   const T x = dot(h, axes.tangent) / (axes.along * rise), y = dot(h, axes.bitangent) / (axes.across * rise);
   return x * x + y * y;
 }
 
-// det_exp() for doubles; for floats det_pow(), which has no doubles in it.
+// det_exp() for doubles; for floats det_pow(), which uses no doubles.
 inline double decay(double x) { return det_exp(-x); }
 inline float decay(float x) { return det_pow(0.36787944f, x < 100 ? x : 100); }
 
@@ -64,7 +64,7 @@ Vec3d exact_value(const Material& material, const Vec3d& specular, const Vec3d& 
   return value_of<double, has_grain>(material, specular, diffuse, frame, to_viewer, to_light);
 }
 
-// Mirrors the viewer in a normal of that distribution of slopes.
+// Mirrors the viewer in a normal drawn from that distribution of slopes.
 template <bool has_grain>
 Vec3d sample(const Material& material, const LobeFrameD& frame, const Vec3d& viewer, double u, double v) {
   const Vec3d to_viewer = above_horizon(frame.normal, viewer);
@@ -75,7 +75,7 @@ Vec3d sample(const Material& material, const LobeFrameD& frame, const Vec3d& vie
   return normalize(half * (2 * dot(half, to_viewer)) - to_viewer);
 }
 
-// That of the normals, exp(−slope²)/(π αx αy cos³), over 4 v·h.
+// Density of the normals, exp(−slope²)/(π αx αy cos³), over 4 v·h.
 template <bool has_grain>
 double density(const Material& material, const LobeFrameD& frame, const Vec3d& viewer, const Vec3d& to_light) {
   const Vec3d to_viewer = above_horizon(frame.normal, viewer);

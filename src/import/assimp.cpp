@@ -90,7 +90,7 @@ struct AssimpReader {
   const aiScene* scene;
   SceneBuilder* builder;
   std::vector<std::uint32_t> materials;  // assimp index → scene index
-  bool own_normals;                      // use the file's
+  bool own_normals;                      // use the file's normals
   Transform upright;
 };
 
@@ -140,7 +140,7 @@ Transform transform_of(const aiMatrix4x4& m) {
   return t;
 }
 
-// Where the meshes below a node lie.
+// Adds the bounds of the meshes below a node.
 void measure(const std::vector<MeshData>& meshes, const aiNode& node, const ExactTransform& world,
              ExactExtent* extent) {
   for (unsigned i = 0; i < node.mNumMeshes; ++i) {
@@ -154,7 +154,7 @@ void measure(const std::vector<MeshData>& meshes, const aiNode& node, const Exac
     measure(meshes, *node.mChildren[i], world * exact(transform_of(node.mChildren[i]->mTransformation)), extent);
 }
 
-// assimp has floats alone: tells where those of the meshes are too coarse for their shape.
+// assimp reads only floats: notes meshes whose coordinates are too coarse for their shape.
 void note_rounding(const std::vector<MeshData>& meshes, SceneBuilder* builder) {
   ExactExtent extent;
   for (const MeshData& mesh : meshes)
@@ -224,7 +224,7 @@ void import_assimp(const std::string& path, const std::string& ending, const Byt
       new FilesBeside(path, builder->options.byte_count_max, &builder->files));  // the importer owns it
   importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
   bool own_normals = ending != "stl";
-  // An STL file is one mesh for each of its solids, which may be empty, and has nothing else to validate.
+  // An STL file has one mesh per solid, which may be empty, and nothing else to validate.
   const bool is_stl = ending == "stl";
   const aiScene* scene = importer.ReadFile(path, is_stl ? 0u : unsigned{aiProcess_ValidateDataStructure});
   if (scene && scene->mRootNode) {

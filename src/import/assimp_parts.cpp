@@ -104,7 +104,7 @@ void add_camera(SceneBuilder* builder, const aiCamera& source, const Transform& 
   Vec3 forward = normalize(transform_vector(world, {l.x, l.y, l.z}));
   camera.target = camera.eye + forward;
   camera.up = normalize(transform_vector(world, {u.x, u.y, u.z}));
-  // The header calls it half the horizontal angle, but the COLLADA, FBX and 3DS readers store the whole angle.
+  // Documented as half the horizontal angle, but the COLLADA, FBX and 3DS readers store the whole angle.
   double aspect = source.mAspect > 0 ? static_cast<double>(source.mAspect) : 4.0 / 3.0;
   double half = std::atan(std::tan(static_cast<double>(source.mHorizontalFOV) / 2) / aspect);
   camera.vertical_fov = static_cast<float>(2 * half);

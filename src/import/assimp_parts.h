@@ -16,8 +16,8 @@ std::uint32_t add_assimp_material(SceneBuilder* builder, const std::string& scen
 void add_assimp_lights_and_cameras(SceneBuilder* builder, const aiScene& scene);
 
 // Throws for a vertex, material, light, camera or node with a number that is not finite or too large, naming it.
-// Accepts such normals unless `own_normals`: STL files are full of NaN normals, which are not read. Vertices count only
-// with `strict`.
+// Ignores such normals unless `own_normals`: STL files are full of NaN normals, which are not read. Vertices are
+// checked only with `strict`.
 void check_assimp_numbers(const aiScene& scene, bool own_normals, bool strict);
 
 }  // namespace pocketray

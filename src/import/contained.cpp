@@ -65,7 +65,7 @@ bool write_all(int pipe, const void* data, std::size_t count) {
   return true;
 }
 
-// False once the deadline has passed.
+// Returns false once the deadline has passed.
 bool wait_for_data(int pipe, SteadyClock::time_point deadline) {
   pollfd waiting = {pipe, POLLIN, 0};
   for (;;) {
@@ -137,14 +137,14 @@ std::string one_line(std::string name) {
   return name;
 }
 
-// In a line, a path with its line feeds as the one byte that no path has; and back.
+// Exchanges line feeds for the one byte that no path contains, so that a path fits into a line; and back.
 std::string exchanged(std::string path, char from, char to) {
   std::replace(path.begin(), path.end(), from, to);
   return path;
 }
 
-// A line for each file, each material and each part. Files, whose names are bounded, come first, as the end may be cut
-// off.
+// One line per file, material and part. Files, whose names are bounded, come first, because the end may be
+// truncated.
 std::string join_names(const ImportedScene& imported) {
   static_assert(kFilesReadBytesMax <= kTextBytesMax / 2, "all files are told");
   std::string lines;
@@ -161,7 +161,7 @@ std::string join_names(const ImportedScene& imported) {
   return lines;
 }
 
-// Lines that the child may have sent wrong are left out.
+// Skips malformed lines from the child.
 void split_names(const std::string& lines, ImportedScene* imported) {
   const std::string material = "material ", file = "file ";
   for (std::size_t at = 0, end; (end = lines.find('\n', at)) != std::string::npos; at = end + 1) {
@@ -197,7 +197,7 @@ bool read_and_send(int pipe, const std::function<void(ImportedScene*)>& read) {
   }
 }
 
-// False if the child did not finish.
+// Returns false if the child did not finish.
 bool receive_result(int pipe, const ContainerLimits& limits, ResultHeader* header, std::string* text,
                     std::string* names, Block* block) {
   const SteadyClock::time_point deadline = SteadyClock::now() + std::chrono::seconds(limits.elapsed_seconds);

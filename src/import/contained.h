@@ -10,9 +10,9 @@ namespace pocketray {
 
 struct ContainerLimits {
   std::uint64_t memory_bytes;      // address space beyond current use; 0: no limit
-  std::uint32_t cpu_seconds;       // of processor time
-  std::uint32_t elapsed_seconds;   // of the clock: a reader that waits forever takes no processor time
-  std::uint64_t result_bytes_max;  // of the scene
+  std::uint32_t cpu_seconds;       // processor time
+  std::uint32_t elapsed_seconds;   // wall time: a reader that waits forever takes no processor time
+  std::uint64_t result_bytes_max;  // size of the scene
 };
 
 // Calls `read` in a child process. Rethrows its exceptions as an ImportError with the same text; if the child crashes

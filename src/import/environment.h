@@ -1,4 +1,4 @@
-// Environments from pictures and from a sky made by code; scene/environment.h has the form in which they are stored.
+// Environments from pictures and procedural skies; scene/environment.h defines the stored form.
 #pragma once
 #include <functional>
 #include <string>
@@ -15,8 +15,8 @@ struct ImportedEnvironment {
   std::vector<std::uint32_t> texels;
   Vec3 mean;  // radiance
   std::vector<Light> lights;
-  std::string file;        // that was read; empty: none
-  bool is_studio = false;  // beside the default lights
+  std::string file;        // file that was read; empty: none
+  bool is_studio = false;  // lights the scene together with default lights
 };
 
 // A picture of linear radiance, rows from the top.
@@ -33,25 +33,25 @@ Status read_environment(const std::string& name, ImportedEnvironment* environmen
 Status decode_radiance(const std::vector<std::uint8_t>& bytes, RadiancePicture* picture);
 
 // Samples a function of direction on `side` × `side` texels, with grid × grid points in each; `side` is a power of two.
-// Radiance below 0 counts as 0, NaN too. Fails where it is too bright to store.
+// Negative radiance and NaN become 0. Fails if it is too bright to store.
 Status make_environment(std::uint32_t side, std::uint32_t grid, const std::function<Vec3d(const Vec3d&)>& radiance,
                         ImportedEnvironment* environment);
 constexpr std::uint32_t kGlossSide = 64;
 
-// The clear sky of [Preetham et al. 1999, "A practical analytic model for daylight", sec. 3 and app. A], in units of
-// 30 kcd/m², so that a white surface in the sun is about display white. Below the horizon lies even ground.
+// The clear sky of [Preetham et al. 1999, "A practical analytic model for daylight", sec. 3 and app. A], in units of 30
+// kcd/m², so that a white surface in the sun is about display white. Below the horizon is uniform ground.
 struct Sky {
   double elevation = 45, turbidity = 3;  // degrees; haze, 2 (clear) to 10
 };
-// Without the sun's disc, which is a directional light.
+// Excludes the sun's disc, which is a directional light.
 Vec3d sky_radiance(const Sky& sky, const Vec3d& direction);
 Light sun_of(const Sky& sky);
 
-// A studio: soft boxes above a dark floor and a grey backdrop, for default lights to stand in (plan/plan_scene.h).
+// A studio: soft boxes above a dark floor and a grey backdrop, used with default lights (plan/plan_scene.h).
 constexpr const char* kStudio = "studio";
 Vec3d studio_radiance(const Vec3d& direction);
-// Whether a scene that has no environment looks poor without one: triangles are metal, mirror, glass, coated or
-// polished. Others reflect even light nearly alike.
+// Returns whether a scene looks poor without an environment: some triangles are metal, mirror, glass, coated or
+// polished. Others look nearly the same under even light.
 bool calls_for_studio(const Scene& scene);
 
 }  // namespace pocketray

@@ -17,7 +17,7 @@ namespace {
 constexpr std::uint32_t kSkySide = 256, kStudioSide = 128, kFileSideMax = 512;
 constexpr std::uint64_t kFileBytesMax = std::uint64_t(1) << 30;
 
-// A number at *at, which moves behind it.
+// Reads a number at *at and advances it.
 bool read_number(const char** at, double* value) {
   char* end;
   *value = std::strtod(*at, &end);
@@ -55,7 +55,7 @@ Status make_studio(ImportedEnvironment* environment) {
   return make_environment(kStudioSide, 2, studio_radiance, environment);
 }
 
-// Means of 2 × 2 pixels.
+// Averages 2 × 2 pixels.
 RadiancePicture halved(const RadiancePicture& picture) {
   RadiancePicture half;
   half.width = (picture.width + 1) / 2, half.height = (picture.height + 1) / 2;
@@ -71,7 +71,7 @@ RadiancePicture halved(const RadiancePicture& picture) {
   return half;
 }
 
-// Bilinear, around the picture and up to its poles.
+// Bilinear sample of the picture, around the seam and up to the poles.
 Vec3d picture_at(const RadiancePicture& picture, const Vec3d& direction) {
   const double across = std::sqrt(direction.x * direction.x + direction.z * direction.z);
   const double turn = across > 0 ? det_acos(-direction.z / across) / (2 * kPi) : 0;
@@ -117,7 +117,7 @@ Status read_environment(const std::string& name, ImportedEnvironment* environmen
   try {
     RadiancePicture picture;
     RETURN_IF_ERROR(read_picture(name, &picture));
-    // A map of 512² texels has as many on the horizon as a picture 1024 pixels wide has in the mean.
+    // A map of 512² texels has as many along the horizon as a picture 1024 pixels wide, on average.
     std::uint32_t side = 64;
     while (side < kFileSideMax && 2 * side < picture.width) side *= 2;
     while (picture.width > 4 * side) picture = halved(picture);

@@ -51,7 +51,7 @@ Map sample_map(std::uint32_t side, std::uint32_t grid, const std::function<Vec3d
   return map;
 }
 
-// Half the side as often as it takes to be at most `side`.
+// Halves the side until it is at most `side`.
 Map reduced(Map map, std::uint32_t side) {
   while (map.side > side) {
     Map half = empty_map(map.side / 2);
@@ -65,16 +65,16 @@ Map reduced(Map map, std::uint32_t side) {
   return map;
 }
 
-// A map, and the means of its blocks of texels.
+// A map with the means of its blocks of texels.
 struct Pyramid {
   Map fine, coarse;
 };
 constexpr std::uint32_t kBlockSide = 4;
 // Cosines between a block and a lobe's axis: near the axis, where the lobe is steep, and where the horizon may cut the
-// block, its texels count one by one. A block of a map of 128² texels spans some 6°.
+// block, its texels are counted one by one. A block of a map of 128² texels spans about 6°.
 constexpr double kNearCosine = 0.9, kHorizonCosine = 0.15;
 
-// A sum over the lobe of a viewer along the normal: weights D(n·h) n·l, as [Karis 2013] samples it, here over all
+// Sum over the lobe for a viewer along the normal: weights D(n·h) n·l, as [Karis 2013] samples it, here over all
 // texels. With 2 (n·h)² = 1 + n·l, D ∝ 1 / ((1 + n·l)/2 (α² − 1) + 1)².
 struct LobeSum {
   double square;  // α²
@@ -107,8 +107,8 @@ Vec3d lobe_mean(const Pyramid& map, const Vec3d& axis, double alpha) {
   return lobe.sum / lobe.weights;
 }
 
-// [Ramamoorthi & Hanrahan 2001] eqs. 3, 9 and 10, as a polynomial in the normal; factors π, 2π/3 and π/4 of the bands,
-// over π.
+// Irradiance / π by [Ramamoorthi & Hanrahan 2001] eqs. 3, 9 and 10, as a polynomial in the normal; the bands have
+// factors π, 2π/3 and π/4.
 void add_irradiance(const Map& map, EnvironmentInfo* info) {
   constexpr double kNorm[9] = {0.25, 0.5, 0.5, 0.5, 15.0 / 16, 15.0 / 16, 15.0 / 16, 15.0 / 64, 5.0 / 64};
   Vec3d sum[9] = {};
@@ -124,7 +124,7 @@ void add_irradiance(const Map& map, EnvironmentInfo* info) {
     for (int c = 0; c < 3; ++c) info->irradiance[k][c] = static_cast<float>(sum[k][c] * (4 * kNorm[k] / all));
 }
 
-// As large as stored texels become, for a scale that uses their range.
+// Chooses a scale so that stored texels use their range.
 Status choose_scale(const Map& map, EnvironmentInfo* info) {
   double most = 0;
   for (const Vec3d& radiance : map.radiance) most = std::fmax(most, max_component(radiance));

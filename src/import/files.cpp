@@ -19,7 +19,7 @@
 
 namespace pocketray {
 
-static constexpr std::size_t kNoteBytes = 16;  // of a short name, beside its text
+static constexpr std::size_t kNoteBytes = 16;  // overhead of a short name besides its text
 
 void note_file(FilesRead* files, const std::string& path) {
   CHECK(files != nullptr);
@@ -61,7 +61,7 @@ std::vector<std::string> parts_of(const std::string& path) {
   return parts;
 }
 
-// Resolves "." and ".."; false if that leads above the first part.
+// Resolves "." and ".."; returns false if that leads above the first part.
 bool resolve(const std::vector<std::string>& parts, std::vector<std::string>* resolved) {
   for (const std::string& part : parts) {
     if (part == "..") {
@@ -85,7 +85,7 @@ std::string real_path(const std::string& path) {
   return real ? real.get() : "";
 }
 
-// The path of a name that ".." leads above the scene file's folder, if it stays below `root`; empty: it does not.
+// Returns the path of a name that ".." leads above the scene file's folder, if it stays below `root`; otherwise empty.
 std::string path_below(const std::string& root, const std::string& folder, const std::vector<std::string>& parts) {
   const std::string real_root = real_path(root), real_folder = real_path(folder);
   if (real_root.empty() || real_folder.empty()) return "";
@@ -115,7 +115,7 @@ std::string path_beside(const std::string& scene_path, const std::string& name, 
   return path;
 }
 
-// The entry of `folder` with that name, else with the same but for case: the first in byte order. Empty if none.
+// Finds the entry of `folder` by name, else ignoring case, the first in byte order. Empty if there is none.
 static std::string entry_in_any_case(const std::string& folder, const std::string& name) {
   std::unique_ptr<DIR, int (*)(DIR*)> directory(opendir(folder.empty() ? "." : folder.c_str()), closedir);
   std::string found;

@@ -1,4 +1,4 @@
-// The steps of reading a glTF file, in order, and where each mesh goes.
+// Reads a glTF file step by step, and places each mesh.
 #include "import/gltf.h"
 
 #include "base/limits.h"
@@ -32,7 +32,7 @@ void append_moving(GltfFile* file, int index, const MeshData& mesh, const Transf
   }
 }
 
-// Static meshes are posed here, once.
+// Poses static meshes here, once.
 void append_placed(GltfFile* file, int index, MeshData mesh, const Transform& instance) {
   const tinygltf::Node& source = file->model.nodes[static_cast<std::size_t>(index)];
   const GltfNode& node = file->nodes[static_cast<std::size_t>(index)];
@@ -51,7 +51,7 @@ void append_placed(GltfFile* file, int index, MeshData mesh, const Transform& in
   append_mesh(file->builder, mesh, node.world * instance, &exactly);
 }
 
-// Refuses instances that exceed a limit before any is built.
+// Refuses instances beyond a limit before any is built.
 void check_room(const GltfFile& file, const std::vector<MeshData>& meshes, std::uint64_t instance_count) {
   std::uint64_t vertices = 0, triangles = 0;
   for (const MeshData& mesh : meshes) vertices += mesh.positions.size(), triangles += mesh.indices.size() / 3;
@@ -80,7 +80,7 @@ void append_node_meshes(GltfFile* file, int index, MeshCache* meshes) {
   }
 }
 
-// The node's name, or its mesh's.
+// Returns the node's name, or its mesh's.
 std::string part_name(const GltfFile& file, int index) {
   const tinygltf::Node& node = file.model.nodes[static_cast<std::size_t>(index)];
   const bool has_mesh = node.mesh >= 0 && static_cast<std::size_t>(node.mesh) < file.model.meshes.size();

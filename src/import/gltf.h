@@ -1,5 +1,5 @@
-// glTF 2.0, inside: the parsed file and the steps that turn it into a scene, each in the file gltf_<step>.cpp.
-// tinygltf parses the structure; buffers and images are fetched here, so that file access stays beside the scene file
+// glTF 2.0 internals: the parsed file and the steps that turn it into a scene, each in the file gltf_<step>.cpp.
+// tinygltf parses the structure; buffers and images are loaded here, so that file access stays beside the scene file
 // and sizes are known before memory is taken. Section numbers cite the Khronos specification of glTF 2.0.
 #pragma once
 #include <tiny_gltf.h>
@@ -26,9 +26,9 @@ struct GltfNode {
   ExactTransform local_exactly, world_exactly;
   bool visible = true;            // by its own KHR_node_visibility
   bool scale_moves = false;       // an animation sets its scale,
-  bool visibility_moves = false;  // or its visibility or that of a node above it
+  bool visibility_moves = false;  // or its visibility or the visibility of a node above it
   bool unseen = false;            // it or a node above it is not visible, and never will be
-  bool hidden = false;            // unseen, or without volume for good: by a scale of 0 of it or of a node above it
+  bool hidden = false;            // unseen, or permanently without volume: its scale or that of a node above it is 0
   bool flat = false;              // without volume at rest
   bool moves = false;             // an animation moves it or a node above it
   bool weights_move = false;      // an animation sets its morph weights
@@ -37,24 +37,24 @@ struct GltfNode {
   std::uint32_t out_node = kNone;
 };
 
-// The TEXCOORD sets of a material that become its first and its second texture coordinates; -1: none.
+// TEXCOORD sets of a material that become its first and second texture coordinates; -1: none.
 struct GltfUvSets {
   int first = -1, second = -1;
 };
 
-// What a channel of an animation drives.
+// Target of an animation channel.
 struct GltfTarget {
   ChannelPath path = ChannelPath::translation;
-  int index = -1;  // of a node, light, camera or material of the file
+  int index = -1;  // index of a node, light, camera or material in the file
 };
-// Key times and values of a sampler as they go into the scene.
+// Key times and values of a sampler, in scene units.
 struct GltfKeys {
   std::vector<float> times, values;
   Interpolation interpolation = Interpolation::linear;
 };
 // A channel that can be used.
 struct GltfDrive {
-  std::size_t animation;  // of the file
+  std::size_t animation;  // index in the file
   GltfTarget target;
   GltfKeys keys;
 };
@@ -63,25 +63,25 @@ struct GltfFile {
   std::string path;
   SceneBuilder* builder = nullptr;
   tinygltf::Model model;
-  Bytes binary_chunk;  // of a .glb
+  Bytes binary_chunk;  // from a .glb
   bool has_binary_chunk = false;
   std::vector<GltfNode> nodes;                              // parallel to model.nodes
   std::vector<GltfDrive> drives;                            // in the file's order
-  std::vector<std::vector<std::uint32_t>> lights, cameras;  // of the scene, for each of the file's
+  std::vector<std::vector<std::uint32_t>> lights, cameras;  // scene indices for each of the file's
   std::vector<int> order;              // visited nodes, parents first; those of the default scene lead
-  std::size_t visible_count = 0;       // nodes of the default scene in `order`; the rest belong to joints outside of it
+  std::size_t visible_count = 0;       // nodes of the default scene in `order`; the others belong to joints outside it
   std::map<int, std::uint32_t> skins;  // glTF skin → scene skin
   std::vector<std::uint32_t> materials;  // glTF index → scene index, made on first use
-  std::vector<GltfUvSets> uv_sets;       // of each material; parallel to model.materials
-  GltfUvSets current_uv_sets;            // of the material being made
+  std::vector<GltfUvSets> uv_sets;       // by material; parallel to model.materials
+  GltfUvSets current_uv_sets;            // sets of the material being made
   std::uint32_t default_material = kNone;
   using ImageUse = std::pair<int, TexelKind>;
   std::map<ImageUse, Image> images;                // decoded, for reading channels
-  using TexelUse = std::pair<ImageUse, bool>;      // whether with levels
+  using TexelUse = std::pair<ImageUse, bool>;      // bool: with levels
   std::map<TexelUse, TexelRun> texels;             // glTF image → its texels in the scene
-  using TextureOfSet = std::pair<ImageUse, int>;   // whether of the second texture coordinates
+  using TextureOfSet = std::pair<ImageUse, int>;   // bool: second texture coordinates
   std::map<TextureOfSet, std::uint32_t> textures;  // glTF texture → scene texture
-  std::set<int> lost_images;                       // missing, or not to be decoded
+  std::set<int> lost_images;                       // missing or not decodable
 };
 
 // gltf.cpp: reads a .gltf or .glb into the builder.
@@ -92,10 +92,10 @@ void gltf_parse(GltfFile* file, Bytes bytes);
 // Bytes of a buffer view, checked. Throws for a view that leaves its buffer.
 const std::uint8_t* gltf_view(const GltfFile& file, int view_index, std::size_t* byte_count);
 
-// gltf_compressed.cpp: makes plain buffer views of compressed ones and of compressed primitives.
+// gltf_compressed.cpp: turns compressed buffer views and compressed primitives into plain buffer views.
 void gltf_decompress(GltfFile* file);
 
-// gltf_json.cpp: refuses invalid JSON, too deep nesting, or a number beyond float, saying where.
+// gltf_json.cpp: refuses invalid JSON, excessive nesting, or a number beyond float, saying where.
 void gltf_check_json(const std::string& text);
 
 // gltf_accessor.cpp: elements as floats (normalised integers expanded, sparse values applied), `components` each; fewer
@@ -103,17 +103,17 @@ void gltf_check_json(const std::string& text);
 // use in errors.
 std::vector<float> gltf_floats(GltfFile* file, int accessor, int components, const char* what,
                                float limit = kCoordinateMax);
-// An attribute of vertices: such a value is NaN instead, unless `strict` is set.
+// gltf_floats() for a vertex attribute: invalid values become NaN instead, unless `strict` is set.
 std::vector<float> gltf_attribute(GltfFile* file, int accessor, int components, const char* what,
                                   float limit = kCoordinateMax);
 std::vector<std::uint32_t> gltf_uints(GltfFile* file, int accessor, int components, const char* what);
-// Of all buffers. An accessor without a buffer view has no more elements: each vertex that it belongs to takes a byte.
+// Bytes of all buffers. Bounds accessors without a buffer view: each vertex that they belong to takes a byte.
 std::uint64_t gltf_bytes(const GltfFile& file);
 int gltf_component_count(const GltfFile& file, int accessor);
 std::vector<Vec3> gltf_vec3s(GltfFile* file, int accessor, const char* what, float limit = kCoordinateMax);
 
-// gltf_texture.cpp. An image that is missing or cannot be decoded is named once and throws LostImage: the material is
-// to be read again without its textures of file->lost_images.
+// gltf_texture.cpp. An image that is missing or cannot be decoded is named once and throws LostImage: the material must
+// be read again without its textures in file->lost_images.
 struct LostImage {};
 const Image& gltf_image(GltfFile* file, int texture_index, TexelKind kind);
 // Scene texture and transform of a texture reference of the material being made.
@@ -130,22 +130,22 @@ std::uint32_t gltf_material(GltfFile* file, int material);
 // gltf_maps.cpp: mean of a texture's colours, linear.
 Vec3 gltf_color_mean(GltfFile* file, int texture);
 
-// gltf_specular_glossiness.cpp: whether a material has the older model, and the material without it.
+// gltf_specular_glossiness.cpp: tells whether a material uses the older model, and converts it.
 bool gltf_has_specular_glossiness(const tinygltf::Material& source);
 tinygltf::Material gltf_without_specular_glossiness(GltfFile* file, const tinygltf::Material& source);
 
-// gltf_maps.cpp: the maps of a material; if it is clear, only those that do not change lobes.
+// gltf_maps.cpp: maps of a material; if it is clear, only those that do not change lobes.
 void gltf_read_maps(GltfFile* file, const tinygltf::Material& source, bool is_clear, MaterialMaps* maps);
-// The mean of a channel of a metallic-roughness texture, 1 without one; above zero if any texel is, so that the mean
-// lobe has what any other has.
+// Mean of a channel of a metallic-roughness texture, 1 without one; above zero if any texel is, so that the mean lobe
+// has every part that some texel's lobe has.
 float gltf_map_mean(GltfFile* file, int texture, int channel);
-// The model dimmed by the means of specular textures.
+// The model scaled by the means of specular textures.
 MetallicRoughness gltf_mean_model(GltfFile* file, const tinygltf::Material& source, MetallicRoughness model);
-// The scene keeps two sets of texture coordinates per vertex: that of the normal texture, whose frame tangents are of,
-// or of the first other texture, and one more. A remark names textures of further ones, which use the first.
+// The scene keeps two sets of texture coordinates per vertex: the set of the normal texture, whose frame tangents use,
+// or of the first other texture, and one more. A remark names textures that use further sets; these use the first.
 GltfUvSets gltf_choose_uv_sets(GltfFile* file, const tinygltf::Material& source);
 
-// gltf_coat.cpp: the clear coat of a material, and its textures if it has one.
+// gltf_coat.cpp: clear coat of a material, and its textures if it has one.
 struct GltfCoatTextures {
   tinygltf::TextureInfo strength, roughness, normal;
 };
@@ -155,7 +155,7 @@ ClearCoat gltf_read_coat(GltfFile* file, const tinygltf::Material& source);
 // gltf_mesh.cpp: the primitives of a mesh that make triangles.
 std::vector<MeshData> gltf_mesh(GltfFile* file, int mesh);
 
-// gltf_count.cpp: refuses a scene whose geometry, with every instance, is more than fits. Builds nothing.
+// gltf_count.cpp: refuses a scene whose geometry, with all instances, exceeds a limit. Builds nothing.
 void gltf_count_geometry(const GltfFile& file);
 
 // gltf_node.cpp: visits the default scene; fills file->nodes and file->order.
@@ -168,30 +168,30 @@ std::vector<Transform> gltf_instances(GltfFile* file, int node);
 Node gltf_node_trs(const GltfFile& file, int node);
 std::string gltf_node_name(const GltfFile& file, int node);
 
-// Node → the node that moves it (its index in the scene to *out_node), or → the world (kNone).
+// Transform from the node to the node that moves it (its index in the scene to *out_node), or to the world (kNone).
 Transform gltf_fixed_part(const GltfFile& file, int node, std::uint32_t* out_node);
 
-// gltf_target.cpp: what a channel drives, by its path or KHR_animation_pointer. False if nothing here, with a note.
+// gltf_target.cpp: target of a channel, by its path or KHR_animation_pointer. False, with a note, if unsupported.
 bool gltf_target(GltfFile* file, const tinygltf::AnimationChannel& channel, GltfTarget* target);
 // "node 3 'Wheel'", "light 0"; "rotation", "colour".
 std::string gltf_target_name(const GltfFile& file, const GltfTarget& target);
 const char* gltf_path_name(ChannelPath path);
 
-// gltf_keys.cpp: fills file->drives with the channels that can be used; notes name the others.
+// gltf_keys.cpp: fills file->drives with the usable channels; notes name the others.
 void gltf_read_animations(GltfFile* file);
 
-// gltf_mover.cpp: finds the nodes that move or are hidden; makes those that move, and their ancestors, nodes of the
-// scene.
+// gltf_mover.cpp: finds the nodes that move or are hidden; turns those that move, and their ancestors, into nodes of
+// the scene.
 void gltf_mark_movers(GltfFile* file);
 void gltf_export_nodes(GltfFile* file);
 std::uint32_t gltf_morph_target_count(const GltfFile& file, int node);
 
-// gltf_animation.cpp: adds the animations, once everything that they drive is in the scene.
+// gltf_animation.cpp: adds the animations, once all their targets are in the scene.
 void gltf_export_animations(GltfFile* file);
-// The node's morph weights at rest, or its mesh's, or zeros.
+// Morph weights of the node at rest, else of its mesh, else zeros.
 std::vector<float> gltf_morph_weights(const GltfFile& file, int node, std::size_t count);
 
-// gltf_skin.cpp: joints of moving skins become nodes of the scene; the nodes of a skin's joints, checked.
+// gltf_skin.cpp: turns joints of moving skins into nodes of the scene; checks the nodes of a skin's joints.
 void gltf_mark_joints(GltfFile* file);
 const std::vector<int>& gltf_joints(const GltfFile& file, int skin);
 bool gltf_skin_moves(const GltfFile& file, int skin);
@@ -199,19 +199,19 @@ bool gltf_skin_moves(const GltfFile& file, int skin);
 std::uint32_t gltf_export_skin(GltfFile* file, int skin);
 // Rest pose → world for each joint, at rest.
 std::vector<Transform> gltf_skin_transforms(GltfFile* file, int skin);
-// Throws if a vertex follows a joint the skin does not have.
+// Throws if a vertex is bound to a joint that the skin does not have.
 void gltf_check_joints(const MeshData& mesh, std::size_t joint_count);
-// Moves the vertices once and removes the targets or weights.
+// Applies morph targets or skin once and removes them.
 void gltf_apply_morph(MeshData* mesh, const std::vector<float>& weights);
 void gltf_apply_skin(MeshData* mesh, const std::vector<Transform>& joints);
 
 // gltf_light.cpp
 void gltf_lights_and_cameras(GltfFile* file);
 
-// A value limited to 0 to 1; 0 for NaN.
+// Clamps a value to 0 to 1; 0 for NaN.
 inline float gltf_unit(double value) { return value > 0 ? static_cast<float>(value < 1 ? value : 1) : 0.0f; }
 
-// Numbers out of tinygltf's generic values, with defaults; an extension object or null.
+// Reads numbers from tinygltf's generic values, with defaults; an extension object or null.
 const tinygltf::Value* gltf_extension(const tinygltf::ExtensionMap& extensions, const char* name);
 double gltf_number(const tinygltf::Value& object, const char* key, double fallback);
 Vec3 gltf_color(const tinygltf::Value& object, const char* key, const Vec3& fallback);

@@ -50,7 +50,7 @@ int component_count(int type) {
   }
 }
 
-// Elements from `byte_offset` of a view, all of which lie in it.
+// Returns elements from `byte_offset` of a view, all of which lie in it.
 Elements elements_of_view(const GltfFile& file, int view_index, std::size_t byte_offset, std::size_t count,
                           int component_type, int components, bool strided, const char* what) {
   Elements e;
@@ -59,7 +59,7 @@ Elements elements_of_view(const GltfFile& file, int view_index, std::size_t byte
   const std::uint8_t* data = gltf_view(file, view_index, &bytes);
   std::size_t own_stride = file.model.bufferViews[static_cast<std::size_t>(view_index)].byteStride;
   e.stride = strided && own_stride ? own_stride : size;
-  if (count == 0) return e;  // wherever
+  if (count == 0) return e;  // no bytes, any offset will do
   bool fits = size > 0 && e.stride >= size && byte_offset <= bytes && size <= bytes - byte_offset &&
               count - 1 <= (bytes - byte_offset - size) / e.stride;
   if (!fits)

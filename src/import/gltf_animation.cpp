@@ -1,4 +1,4 @@
-// Animations (sec. 3.11): those that do not drive the same thing play together, as one, from the start.
+// Animations (sec. 3.11): those with disjoint targets play together, as one, from the start.
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -10,17 +10,17 @@ namespace pocketray {
 namespace {
 
 constexpr float kFramesPerSecond = 30;  // glTF has keys, not frames
-constexpr float kFaint = 1e-6f;         // of its brightest: what emits at times must emit always (engine/recolor.h)
+constexpr float kFaint = 1e-6f;         // of the peak: what emits at times must emit always (engine/recolor.h)
 
 // An animation of the file with the drives that the scene can follow.
 struct Clip {
   std::size_t animation;
   std::vector<const GltfDrive*> drives;
-  bool plays = false;  // with the first ones
+  bool plays = false;  // together with the first ones
   Animation written = {0, 0, 0};
 };
 
-// A light's colour and intensity make one value.
+// A light's colour and intensity form one value.
 std::pair<ChannelPath, int> driven(const GltfTarget& target) {
   return {target.path == ChannelPath::light_scale ? ChannelPath::light_intensity : target.path, target.index};
 }
@@ -37,7 +37,7 @@ std::vector<Clip> find_clips(GltfFile* file) {
     if (clips.empty() || clips.back().animation != drive.animation) clips.push_back({drive.animation, {}});
     if (drives(clips.back(), drive.target))
       note_remark(file->builder,
-                  "an animation drives " + gltf_target_name(*file, drive.target) + " twice: the first counts");
+                  "an animation drives " + gltf_target_name(*file, drive.target) + " twice: the first is used");
     else
       clips.back().drives.push_back(&drive);
   }
@@ -49,7 +49,7 @@ std::string clip_name(const GltfFile& file, const Clip& clip, std::size_t number
   return std::to_string(number) + (name.empty() ? "" : " '" + name.substr(0, 60) + "'");
 }
 
-// Marks the clips that play together: each that drives nothing that one before it drives.
+// Marks the clips that play together: each whose targets no clip before it drives.
 void choose_clips(GltfFile* file, std::vector<Clip>* clips) {
   std::set<std::pair<ChannelPath, int>> taken;
   std::string left_out;
@@ -63,14 +63,14 @@ void choose_clips(GltfFile* file, std::vector<Clip>* clips) {
   }
   if (!left_out.empty())
     note_remark(file->builder,
-                "animations that drive what another drives do not play: --animation chooses one (" + left_out + ")");
+                "animations that share a target do not play together: --animation chooses one (" + left_out + ")");
 }
 
 void multiply(GltfKeys* keys, float factor) {
   for (float& value : keys->values) value *= factor;
 }
 
-// Takes the scene's origin from the values, not from the tangents.
+// Subtracts the scene's origin from the values, not from the tangents.
 void move_to_origin(const Vec3d& origin, GltfKeys* keys) {
   const std::size_t rows = keys->interpolation == Interpolation::cubic ? 3 : 1;
   for (std::size_t row = rows / 2; row < keys->values.size() / 3; row += rows)
@@ -117,7 +117,7 @@ void write_light(GltfFile* file, const GltfDrive& drive, Clip* clip) {
     write_channel(file, path, index, keys, &clip->written);
 }
 
-// The diffuse lobe is all that the base colour of a material makes, unless it is metal or glass.
+// Base colour affects only the diffuse lobe, unless the material is metal or glass.
 void write_base_color(GltfFile* file, const GltfDrive& drive, std::uint32_t index, Clip* clip) {
   const SceneArrays& out = *file->builder->out;
   const Material& material = out.materials[index];
@@ -139,7 +139,7 @@ void write_base_color(GltfFile* file, const GltfDrive& drive, std::uint32_t inde
 
 void write_emission(GltfFile* file, const GltfDrive& drive, std::uint32_t index, Clip* clip) {
   Material& material = file->builder->out->materials[index];
-  if (material.unlit) return note_unused(file->builder, "animation of what unlit materials emit");
+  if (material.unlit) return note_unused(file->builder, "animation of unlit materials' emission");
   const tinygltf::Material& source = file->model.materials[static_cast<std::size_t>(drive.target.index)];
   const tinygltf::Value* extension = gltf_extension(source.extensions, "KHR_materials_emissive_strength");
   GltfKeys keys = drive.keys;
@@ -167,7 +167,7 @@ void write_drive(GltfFile* file, const GltfDrive& drive, Clip* clip) {
       return;
     case ChannelPath::material_diffuse:
     case ChannelPath::material_emission:
-      if (file->materials[index] == kNone) return;  // nothing has it
+      if (file->materials[index] == kNone) return;  // no triangle uses it
       return drive.target.path == ChannelPath::material_diffuse
                  ? write_base_color(file, drive, file->materials[index], clip)
                  : write_emission(file, drive, file->materials[index], clip);
@@ -179,7 +179,7 @@ void write_drive(GltfFile* file, const GltfDrive& drive, Clip* clip) {
   }
 }
 
-// What multiplies a light's value comes after what sets it.
+// Channels that multiply a light's value come after those that set it.
 void write_clip(GltfFile* file, Clip* clip) {
   clip->written.channel_begin = static_cast<std::uint32_t>(file->builder->out->channels.size());
   for (const bool multiplies : {false, true})
@@ -187,7 +187,7 @@ void write_clip(GltfFile* file, Clip* clip) {
       if ((drive->target.path == ChannelPath::light_scale) == multiplies) write_drive(file, *drive, clip);
 }
 
-// Copies what fits, whole characters of UTF-8.
+// Copies as many whole UTF-8 characters as fit.
 template <std::size_t size>
 void copy_text(std::string text, char (&to)[size]) {
   if (text.size() > size) {

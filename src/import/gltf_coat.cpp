@@ -30,7 +30,7 @@ ClearCoat gltf_read_coat(GltfFile* file, const tinygltf::Material& source) {
   }
   if (textures.normal.index < 0) return coat;
   if (gltf_uv_set(textures.normal) != file->current_uv_sets.first) {
-    note_unused(file->builder, "normal textures of clear coats with other texture coordinates than those of the base");
+    note_unused(file->builder, "normal textures of clear coats with texture coordinates other than the base's");
     return coat;
   }
   coat.normal = gltf_texture_use(file, textures.normal, TexelKind::numbers);

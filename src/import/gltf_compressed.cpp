@@ -1,5 +1,5 @@
-// Compressed geometry: EXT_meshopt_compression by meshoptimizer, KHR_draco_mesh_compression by Draco, where the build
-// has them. Both become plain buffer views, which the other steps read.
+// Compressed geometry: EXT_meshopt_compression by meshoptimizer, KHR_draco_mesh_compression by Draco, if the build has
+// them. Both become plain buffer views, which the other steps read.
 #include <cstring>
 
 #include "import/gltf.h"
@@ -16,7 +16,7 @@ namespace {
 
 constexpr const char *kMeshopt = "EXT_meshopt_compression", *kDraco = "KHR_draco_mesh_compression";
 
-// Appends a buffer with a view of all of it; the view's index.
+// Appends a buffer with a view of all of it; returns the view's index.
 [[maybe_unused]] int add_view(GltfFile* file, std::vector<unsigned char> bytes, std::size_t stride) {
   tinygltf::BufferView view;
   view.buffer = static_cast<int>(file->model.buffers.size());
@@ -49,7 +49,7 @@ void filter(const std::string& name, std::size_t count, std::size_t stride, unsi
                 stride);
 }
 
-// The view with its bytes in a buffer of their own.
+// Decompresses a view into its own buffer.
 void decompress_view(GltfFile* file, std::size_t index, const tinygltf::Value& extension) {
   const std::size_t count = whole(extension, "count", 1e9), stride = whole(extension, "byteStride", 256),
                     offset = whole(extension, "byteOffset", 1e15), size = whole(extension, "byteLength", 1e15),
@@ -63,7 +63,7 @@ void decompress_view(GltfFile* file, std::size_t index, const tinygltf::Value& e
   if (!fits || (has_triangles && count % 3 != 0) || (!has_vertices && !has_triangles && mode != "INDICES"))
     fail_import("a compressed view of mode '%.20s' has elements of %zu bytes; export the file again", mode.c_str(),
                 stride);
-  // At least a bit for 256 bytes: no more memory than that is taken for few bytes.
+  // Requires a bit per 256 bytes, which bounds the memory that few bytes can claim.
   if (std::uint64_t(count) * stride / 2048 > size) fail_import("a compressed view is too short; export the file again");
   charge_bytes(file->builder, std::uint64_t(count) * stride, "the compressed geometry");
   std::vector<unsigned char> bytes(count * stride);
@@ -93,7 +93,7 @@ void decompress_view(GltfFile*, std::size_t, const tinygltf::Value&) {
 
 #ifdef POCKETRAY_HAVE_DRACO
 
-// The accessor shows these elements from here on.
+// Makes the accessor refer to these elements.
 void fill_accessor(GltfFile* file, int index, std::vector<unsigned char> bytes, std::size_t count, int component_type,
                    int type) {
   if (index < 0 || static_cast<std::size_t>(index) >= file->model.accessors.size())
@@ -105,7 +105,7 @@ void fill_accessor(GltfFile* file, int index, std::vector<unsigned char> bytes, 
   accessor.componentType = component_type, accessor.type = type, accessor.sparse.isSparse = false;
 }
 
-// An attribute as floats, or as integers where the accessor has those.
+// Reads an attribute as floats, or as integers if the accessor has integers.
 void fill_attribute(GltfFile* file, const draco::Mesh& mesh, const draco::PointAttribute& attribute, int index) {
   constexpr int kTypes[] = {0, TINYGLTF_TYPE_SCALAR, TINYGLTF_TYPE_VEC2, TINYGLTF_TYPE_VEC3, TINYGLTF_TYPE_VEC4};
   const int components = attribute.num_components();

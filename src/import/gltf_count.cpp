@@ -1,4 +1,4 @@
-// Counts the geometry of the scene before any of it is built: instances multiply a mesh by what a few bytes say.
+// Counts the geometry of the scene before any is built: a few bytes of instances can multiply a mesh.
 #include <algorithm>
 
 #include "import/gltf.h"
@@ -8,10 +8,10 @@ namespace pocketray {
 namespace {
 
 struct Count {
-  double vertices = 0, triangles = 0;  // may be beyond what integers hold
+  double vertices = 0, triangles = 0;  // may exceed integers
 };
 
-// 0 if there is no such accessor, or it says more than its bytes can hold: reading it tells what is wrong.
+// Returns 0 if there is no such accessor or its count exceeds its bytes; reading it then reports the error.
 double accessor_count(const GltfFile& file, int index) {
   const tinygltf::Model& model = file.model;
   if (index < 0 || static_cast<std::size_t>(index) >= model.accessors.size()) return 0;

@@ -72,8 +72,8 @@ class Checker {
       if (level.key == "extras") return true;
     return false;
   }
-  // A path like /nodes/3/scale/0 of the latest value, or of the `next` if that could not begin, and the innermost known
-  // name.
+  // Returns a path like /nodes/3/scale/0 of the latest value, or of the `next` one if it could not begin, and the
+  // innermost known name.
   std::string place(bool next = false) const {
     std::string path, name;
     for (const Level& level : levels_) {

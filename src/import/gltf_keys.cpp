@@ -9,7 +9,7 @@
 namespace pocketray {
 namespace {
 
-// Floats of a value in the file.
+// Number of floats per value in the file.
 std::size_t width_in_file(const GltfFile& file, const GltfTarget& target) {
   if (target.path == ChannelPath::material_diffuse) return 4;  // with opacity
   const bool has_weights = target.path == ChannelPath::weights;
@@ -20,16 +20,16 @@ std::size_t values_per_key(const GltfKeys& keys, std::size_t width) {
   return width * (keys.interpolation == Interpolation::cubic ? 3 : 1);
 }
 
-// Null, or what makes the keys useless.
+// Returns why the keys are unusable, or null.
 const char* fault_of(const GltfKeys& keys, std::size_t width) {
   if (width == 0) return "there are no morph targets";
   if (keys.times.empty() || keys.values.size() != keys.times.size() * values_per_key(keys, width))
-    return "it has not one value for each key";
+    return "it does not have one value per key";
   if (keys.times[0] < 0) return "it begins before time 0";
   return std::is_sorted(keys.times.begin(), keys.times.end()) ? nullptr : "its keys descend";
 }
 
-// Of keys at equal times, leaves the last (HARDCASES row 67). False if there are none.
+// Keeps the last of keys at equal times (HARDCASES row 67). Returns false if there are no keys.
 bool drop_equal_times(std::size_t value_count, GltfKeys* keys) {
   std::size_t kept = 0;
   for (std::size_t i = 0; i < keys->times.size(); ++i) {
@@ -52,7 +52,7 @@ GltfKeys read_keys(GltfFile* file, const tinygltf::Animation& animation, int sam
   if (sampler.interpolation == "STEP") keys.interpolation = Interpolation::step;
   if (sampler.interpolation == "CUBICSPLINE") keys.interpolation = Interpolation::cubic;
   keys.times = gltf_floats(file, sampler.input, 1, "animation times");
-  // Weights are scalars, so many for each key.
+  // Weights are scalars, several per key.
   const int own = gltf_component_count(*file, sampler.output), components = static_cast<int>(width > 4 ? 1 : width);
   keys.values = gltf_floats(file, sampler.output, own == 1 ? 1 : components, "animation values");
   return keys;
@@ -68,7 +68,7 @@ void read_channel(GltfFile* file, std::size_t index, const tinygltf::AnimationCh
   if (const char* fault = fault_of(drive.keys, width))
     return note_remark(file->builder, "the animation of " + what + " is left out: " + fault);
   if (drop_equal_times(values_per_key(drive.keys, width), &drive.keys))
-    note_remark(file->builder, "of keys at equal times, the last counts");
+    note_remark(file->builder, "of keys at equal times, the last is used");
   charge_bytes(file->builder, (drive.keys.times.size() + drive.keys.values.size()) * sizeof(float), "the animation");
   file->drives.push_back(std::move(drive));
 }

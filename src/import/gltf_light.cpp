@@ -41,7 +41,7 @@ void add_light(GltfFile* file, std::size_t light_index, int node_index) {
     double outer = std::min(std::max(source.spot.outerConeAngle, 0.0), kPi / 2);
     double inner = std::min(std::max(source.spot.innerConeAngle, 0.0), outer);
     light.cos_outer = static_cast<float>(det_cos(outer));
-    // Between the cones the cosine falls by 0.001 at least (KHR_lights_punctual, "Inner and Outer Cone Angles").
+    // Between the cones, the cosine falls by at least 0.001 (KHR_lights_punctual, "Inner and Outer Cone Angles").
     light.cos_inner = static_cast<float>(std::min(std::max(det_cos(inner), det_cos(outer) + 0.001), 1.0));
   }
   file->lights[light_index].push_back(static_cast<std::uint32_t>(out.lights.size()));

@@ -1,4 +1,4 @@
-// Materials whose images are missing or cannot be decoded: shown in the colours of their factors.
+// Materials whose images are missing or cannot be decoded show the colours of their factors.
 #include "import/gltf.h"
 
 namespace pocketray {
@@ -9,7 +9,7 @@ bool is_lost(const GltfFile& file, double texture) {
   return file.lost_images.count(file.model.textures[static_cast<std::size_t>(texture)].source) > 0;
 }
 
-// A use of a texture is an object with an index.
+// Removes uses of lost textures: objects with an index.
 tinygltf::Value without_lost(const GltfFile& file, const tinygltf::Value& value) {
   if (!value.IsObject()) return value;
   tinygltf::Value::Object kept;

@@ -10,7 +10,7 @@
 namespace pocketray {
 namespace {
 
-// Metallic (blue) and roughness (green): their ranges, and the use of the texture, if there is one.
+// Metallic (blue) and roughness (green): their ranges and, if there is one, the use of the texture.
 void read_metallic_roughness(GltfFile* file, const tinygltf::PbrMetallicRoughness& pbr, MaterialMaps* maps) {
   ChannelRange metallic = {255, 255}, roughness = {255, 255};
   if (pbr.metallicRoughnessTexture.index >= 0) {
@@ -26,7 +26,7 @@ void read_metallic_roughness(GltfFile* file, const tinygltf::PbrMetallicRoughnes
   maps->metallic_roughness = gltf_texture_use(file, pbr.metallicRoughnessTexture, TexelKind::numbers);
 }
 
-// Normal and occlusion textures have structures of their own in tinygltf.
+// Normal and occlusion textures have their own structures in tinygltf.
 template <class Info>
 tinygltf::TextureInfo plain(const Info& info) {
   tinygltf::TextureInfo result;
@@ -48,7 +48,7 @@ tinygltf::TextureInfo anisotropy_texture(const tinygltf::Material& source) {
   return extension ? gltf_texture_info(*extension, "anisotropyTexture") : tinygltf::TextureInfo();
 }
 
-// A dark texture leaves a trace of a lobe, for the same reason as in gltf_map_mean().
+// Even a dark texture keeps a trace of a lobe, for the reason given at gltf_map_mean().
 constexpr float kLeastMean = 0x1p-10f;
 
 Vec3 color_mean(const Image& image) {
@@ -97,7 +97,7 @@ void gltf_read_maps(GltfFile* file, const tinygltf::Material& source, bool is_cl
     maps->specular_color = gltf_texture_use(file, specular.color);
   } else if (is_rough || specular.share.index >= 0 || specular.color.index >= 0) {
     note_remark(file->builder,
-                "metallic-roughness and specular textures of transparent materials count only by their mean");
+                "only the mean of metallic-roughness and specular textures of transparent materials is used");
   }
   maps->normal = gltf_texture_use(file, plain(source.normalTexture), TexelKind::numbers);
   const double scale = source.normalTexture.scale, most = static_cast<double>(kNormalScaleMax);
@@ -110,7 +110,7 @@ GltfUvSets gltf_choose_uv_sets(GltfFile* file, const tinygltf::Material& source)
   const tinygltf::PbrMetallicRoughness& pbr = source.pbrMetallicRoughness;
   const SpecularTextures specular = specular_textures(source);
   const GltfCoatTextures coat = gltf_coat_textures(source);
-  const bool leads = source.normalTexture.index < 0;  // the frame of tangents is of the coat's normals alone
+  const bool leads = source.normalTexture.index < 0;  // the tangent frame serves only the coat's normals
   const tinygltf::Value* anisotropy = gltf_extension(source.extensions, "KHR_materials_anisotropy");
   const bool has_grain = anisotropy && gltf_number(*anisotropy, "anisotropyStrength", 0) > 0;
   const bool is_lit = !gltf_extension(source.extensions, "KHR_materials_unlit");

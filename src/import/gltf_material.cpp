@@ -6,8 +6,8 @@
 //   factor
 //                (KHR_materials_specular)
 //   absorption = −ln(attenuation colour)/attenuation distance (KHR_materials_volume)
-// A metallicRoughness texture becomes a map, and the material has the lobes of its mean; of a transparent material, the
-// mean is all that counts. A transmission texture multiplies its factor by its mean.
+// A metallicRoughness texture becomes a map, and the material has the lobes of its mean; a transparent material uses
+// only the mean. A transmission texture multiplies its factor by its mean.
 #include <algorithm>
 #include <cmath>
 
@@ -26,10 +26,10 @@ Vec3 color3(const std::vector<double>& values, const Vec3& fallback) {
   return {gltf_unit(values[0]), gltf_unit(values[1]), gltf_unit(values[2])};
 }
 
-// The mean of a data texture's channel; 1 without the texture.
+// Mean of a data texture's channel; 1 without the texture.
 float texture_mean(GltfFile* file, int texture, int channel, const char* name) {
   if (texture < 0) return 1;
-  note_remark(file->builder, std::string(name) + " textures count only by their mean");
+  note_remark(file->builder, std::string("only the mean of ") + name + " textures is used");
   return channel_mean(gltf_image(file, texture, TexelKind::numbers), channel);
 }
 
@@ -45,7 +45,7 @@ void read_volume(const tinygltf::ExtensionMap& extensions, Material* material) {
   }
 }
 
-// KHR_materials_specular: what a dielectric reflects at normal incidence and at grazing incidence.
+// KHR_materials_specular: a dielectric's reflectance at normal incidence and at grazing incidence.
 struct DielectricSpecular {
   Vec3 normal;
   float grazing;
@@ -180,7 +180,7 @@ std::uint32_t gltf_material(GltfFile* file, int index) {
   while (*known == kNone) try {
       const tinygltf::Material& given = index < 0 ? kDefault : file->model.materials[static_cast<std::size_t>(index)];
       *known = read_material(file, index, gltf_without_lost_textures(*file, given));
-    } catch (const LostImage&) {  // at most once for each image
+    } catch (const LostImage&) {  // at most once per image
     }
   return *known;
 }

@@ -21,7 +21,7 @@ std::uint16_t to_u16(float value) {
   return value >= 1 ? 65535 : static_cast<std::uint16_t>(value * 65535.0f + 0.5f);
 }
 
-// Corner indices of the triangles that `mode` makes of `count` corners (sec. 3.7.2.1).
+// Returns the corner indices of the triangles that `mode` makes of `count` corners (sec. 3.7.2.1).
 std::vector<std::uint32_t> triangle_corners(int mode, std::size_t count) {
   std::vector<std::uint32_t> corners;
   std::uint32_t n = static_cast<std::uint32_t>(count);
@@ -89,10 +89,10 @@ void read_uvs(GltfFile* file, const tinygltf::Primitive& primitive, int set, con
   }
 }
 
-// Tangents of the file where the material needs some (sec. 3.7.2.1); zero where one is along the normal or has no
-// handedness, so that it is made like those of files without.
+// Reads the file's tangents if the material needs them (sec. 3.7.2.1); zero where a tangent is along the normal or has
+// no handedness, so that it is computed as for files without.
 void read_tangents(GltfFile* file, const tinygltf::Primitive& primitive, MeshData* mesh) {
-  constexpr double kSineMin = 1e-3;  // chosen: a direction that rounding has not made
+  constexpr double kSineMin = 1e-3;  // chosen: above directions that stem from rounding
   const int accessor = attribute(primitive, "TANGENT");
   if (accessor < 0 || mesh->normals.empty() || !needs_tangents(*file->builder->out, mesh->material)) return;
   std::vector<float> values;
@@ -100,7 +100,7 @@ void read_tangents(GltfFile* file, const tinygltf::Primitive& primitive, MeshDat
     values = gltf_floats(file, accessor, 4, "TANGENT");
     require_count(values.size() / 4, mesh->positions.size(), "TANGENT");
   } catch (const ImportError& error) {
-    note_remark(file->builder, std::string("tangents are made anew: ") + error.what());
+    note_remark(file->builder, std::string("tangents are recomputed: ") + error.what());
     return;
   }
   std::size_t unusable = 0;
@@ -112,7 +112,7 @@ void read_tangents(GltfFile* file, const tinygltf::Primitive& primitive, MeshDat
     mesh->tangents.push_back({is_usable ? to_float(normalize(flat)) : Vec3{0, 0, 0}, t[3] < 0 ? -1 : 1});
   }
   if (unusable)
-    note_remark(file->builder, "tangents that are zero, along the normal or without handedness are made anew");
+    note_remark(file->builder, "tangents that are zero, along the normal or without handedness are recomputed");
 }
 
 void read_skin_weights(GltfFile* file, const tinygltf::Primitive& primitive, MeshData* mesh) {

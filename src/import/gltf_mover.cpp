@@ -1,4 +1,4 @@
-// The nodes that animations move (sec. 3.11), and those that are hidden.
+// The nodes that animations move (sec. 3.11), and hidden nodes.
 #include <algorithm>
 #include <cmath>
 
@@ -46,7 +46,7 @@ Node decomposed(GltfFile* file, const Transform& t) {
   return node;
 }
 
-// Into the scene's own coordinates.
+// Converts a root's translation to the scene's coordinates.
 Vec3 root_translation(const GltfFile& file, const GltfNode& node) {
   const Vec3d origin = origin_of(*file.builder);
   Vec3 t;
@@ -136,7 +136,7 @@ void gltf_mark_movers(GltfFile* file) {
 }
 
 void gltf_export_nodes(GltfFile* file) {
-  // Nodes with a channel, and joints, with all their ancestors.
+  // Exports nodes with a channel, and joints, with all their ancestors.
   for (auto index = file->order.rbegin(); index != file->order.rend(); ++index) {
     GltfNode& node = file->nodes[static_cast<std::size_t>(*index)];
     node.exported |= node.mover == *index;

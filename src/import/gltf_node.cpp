@@ -18,7 +18,7 @@ Quaternion unit_quaternion(const Quaternion& q, bool* valid) {
   double n = std::sqrt(static_cast<double>(q.x) * q.x + static_cast<double>(q.y) * q.y +
                        static_cast<double>(q.z) * q.z + static_cast<double>(q.w) * q.w);
   *valid = n > 0 && std::isfinite(n);
-  // Keeps a quaternion that is of unit length up to float rounding bit for bit.
+  // Keeps a quaternion that is of unit length up to float rounding unchanged, bit for bit.
   if (!*valid || std::fabs(n - 1) < 1e-6) return q;
   return {static_cast<float>(q.x / n), static_cast<float>(q.y / n), static_cast<float>(q.z / n),
           static_cast<float>(q.w / n)};
@@ -40,7 +40,7 @@ Transform local_transform(const GltfFile& file, int index) {
   return compose(trs.translation, trs.rotation, trs.scale);
 }
 
-// With the translation in double, which alone can be large for what it carries.
+// Local transform with the translation in double: only translations can be large relative to what they move.
 ExactTransform exact_local(const GltfFile& file, int index, const Transform& local) {
   const tinygltf::Node& node = file.model.nodes[static_cast<std::size_t>(index)];
   ExactTransform t = exact(local);
@@ -157,7 +157,7 @@ void gltf_visit_nodes(GltfFile* file) {
   }
 }
 
-// Adds the bounds of a mesh's primitives, as the file states them, by their corners.
+// Adds the bounds of a mesh's primitives, as stated in the file, by their corners.
 static void measure_mesh(const GltfFile& file, int index, const ExactTransform& world, ExactExtent* extent) {
   if (index < 0 || static_cast<std::size_t>(index) >= file.model.meshes.size()) return;
   const auto& accessors = file.model.accessors;

@@ -11,7 +11,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-// Implemented here, or harmless to ignore.
+// Extensions implemented here, or harmless to ignore.
 const char* const kKnownExtensions[] = {
     "KHR_texture_transform",
     "KHR_materials_transmission",
@@ -36,7 +36,7 @@ bool is_known_extension(const std::string& name) {
   return std::any_of(std::begin(kKnownExtensions), std::end(kKnownExtensions),
                      [&](const char* known) { return name == known; });
 }
-// Extensions without which a file is all there, though it looks otherwise.
+// Returns whether a file without the extension is complete, though it looks different.
 bool affects_looks_alone(const std::string& name) {
   constexpr const char* kPrefixes[] = {
       "KHR_materials_", "EXT_materials_",    "ADOBE_materials_", "EXT_lights_",   "KHR_environment_map",
@@ -108,7 +108,7 @@ void check_version_and_extensions(GltfFile* file, const Json& root) {
         note_unused(file->builder, name.get<std::string>().substr(0, 100));
 }
 
-// A buffer without bytes, in place of compressed views (EXT_meshopt_compression).
+// Returns whether a buffer without bytes stands for compressed views (EXT_meshopt_compression).
 bool is_fallback(const Json& buffer) {
   const Json* extensions = member(buffer, "extensions");
   const Json* extension = extensions ? member(*extensions, "EXT_meshopt_compression") : nullptr;
@@ -116,7 +116,7 @@ bool is_fallback(const Json& buffer) {
   return fallback && fallback->is_boolean() && fallback->get<bool>();
 }
 
-// Fetches the buffers; afterwards every buffer has at least its stated bytes (sec. 3.6.1.1).
+// Loads the buffers; afterwards every buffer has at least its stated bytes (sec. 3.6.1.1).
 void fetch_buffers(GltfFile* file, const Json& root) {
   const Json* buffers = member(root, "buffers");
   if (!buffers) return;
@@ -146,7 +146,7 @@ void fetch_buffers(GltfFile* file, const Json& root) {
   }
 }
 
-// Lists images without their bytes, which are fetched when a material needs them.
+// Lists images without their bytes, which are loaded when a material needs them.
 void list_images(GltfFile* file, const Json& root) {
   const Json* images = member(root, "images");
   if (!images || !images->is_array()) return;
@@ -162,7 +162,7 @@ void list_images(GltfFile* file, const Json& root) {
   }
 }
 
-// Removes the uses of textures without an image: an extension that is not read has it, in another format.
+// Removes uses of textures without an image: an extension that is not read has it in another format.
 void drop_textures(const std::vector<bool>& has_image, Json* value, bool* dropped) {
   for (auto item = value->begin(); item != value->end();) {
     const Json* index = member(*item, "index");
@@ -176,7 +176,7 @@ void drop_textures(const std::vector<bool>& has_image, Json* value, bool* droppe
     }
   }
 }
-// An image that only EXT_texture_webp names becomes the texture's own.
+// Makes an image named only by EXT_texture_webp the texture's own.
 void use_webp_images(Json* textures) {
   for (Json& texture : *textures) {
     const Json* extensions = member(texture, "extensions");
@@ -195,10 +195,10 @@ void drop_textures_without_image(GltfFile* file, Json* root) {
   for (const Json& texture : *textures) has_image.push_back(member(texture, "source") != nullptr);
   bool dropped = false;
   drop_textures(has_image, &*materials, &dropped);
-  if (dropped) note_unused(file->builder, "textures in other formats than PNG, JPEG and WebP");
+  if (dropped) note_unused(file->builder, "textures in formats other than PNG, JPEG and WebP");
 }
 
-// The library wants indices to lie in a view, those of compressed primitives as well; gltf_decompress() replaces it.
+// tinygltf requires indices to lie in a view, even for compressed primitives; gltf_decompress() replaces it.
 void complete_compressed_indices(Json* root) {
   auto meshes = root->find("meshes"), accessors = root->find("accessors");
   if (meshes == root->end() || accessors == root->end() || !meshes->is_array() || !accessors->is_array()) return;
@@ -217,7 +217,7 @@ void complete_compressed_indices(Json* root) {
   }
 }
 
-// The library wants every channel to name a node; those of KHR_animation_pointer have none, and others are to be
+// tinygltf requires every channel to name a node; channels of KHR_animation_pointer have none, and others are to be
 // ignored (sec. 3.11).
 void complete_channels(Json* root) {
   auto animations = root->find("animations");

@@ -1,4 +1,4 @@
-// Skins (sec. 3.7.3) and meshes posed once: a skin or morph weights that never move.
+// Skins (sec. 3.7.3), and meshes posed once because their skin or morph weights never move.
 #include "import/gltf.h"
 #include "import/import_error.h"
 
@@ -24,7 +24,7 @@ std::vector<Transform> inverse_binds(GltfFile* file, const tinygltf::Skin& skin)
   return result;
 }
 
-// A joint without volume leaves none to what follows it (HARDCASES row 70).
+// A joint without volume gives none to the vertices that follow it (HARDCASES row 70).
 Transform joint_world(const GltfNode& joint) {
   Transform world = joint.world;
   if (joint.flat || joint.unseen)
@@ -95,7 +95,7 @@ void gltf_apply_morph(MeshData* mesh, const std::vector<float>& weights) {
   std::size_t count = mesh->positions.size();
   for (std::size_t target = 0; target < mesh->morph_count; ++target) {
     if (weights[target] == 0) continue;
-    mesh->tangents.clear();  // they follow the new shape when made anew
+    mesh->tangents.clear();  // computed anew for the new shape
     for (std::size_t v = 0; v < count; ++v) {
       mesh->positions[v] += mesh->morph_positions[target * count + v] * weights[target];
       if (!mesh->morph_normals.empty()) mesh->normals[v] += mesh->morph_normals[target * count + v] * weights[target];

@@ -2,7 +2,7 @@
 // KHR_materials_specular, for diffuse colour c, specular colour s and glossiness g:
 //   base colour = c · (1 − max(s)), metallic 0, roughness = 1 − g
 //   specular colour factor = s / 0.04, its texture's colours that of the specularGlossinessTexture
-// The texture's alpha, which scales g, counts by its mean, and so do its colours in what the base colour loses.
+// The mean of the texture's alpha scales g, and the mean of its colours reduces the base colour.
 #include <algorithm>
 
 #include "import/gltf.h"
@@ -41,7 +41,7 @@ tinygltf::Material gltf_without_specular_glossiness(GltfFile* file, const tinygl
   Vec3 mean = {1, 1, 1};
   if (texture.index >= 0) {
     mean = gltf_color_mean(file, texture.index);
-    note_remark(file->builder, "glossiness textures count only by their mean");
+    note_remark(file->builder, "only the mean of glossiness textures is used");
     glossiness *= static_cast<double>(channel_mean(gltf_image(file, texture.index, TexelKind::colors), 3));
   }
   double reflected = 0;

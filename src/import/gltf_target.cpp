@@ -1,4 +1,4 @@
-// What animation channels drive (secs. 3.11, KHR_animation_pointer).
+// Targets of animation channels (secs. 3.11, KHR_animation_pointer).
 #include <algorithm>
 #include <cstdlib>
 
@@ -13,7 +13,7 @@ constexpr const char* kPathNames[] = {"translation", "rotation", "scale",       
                                       "intensity",   "scale",    "field of view", "colour",  "emission"};
 static_assert(sizeof kPathNames / sizeof kPathNames[0] == kChannelPathCount, "one name for each");
 
-// Pointers that the scene can follow; {} is an index. The light's colour and intensity make one value.
+// Pointers that the scene supports; {} is an index. A light's colour and intensity form one value.
 constexpr struct {
   const char* pointer;
   ChannelPath path;
@@ -52,7 +52,7 @@ std::size_t count_of(const GltfFile& file, ChannelPath path) {
   return path == ChannelPath::camera_size ? file.model.cameras.size() : file.model.materials.size();
 }
 
-// The target of a pointer, or of one of the four paths.
+// Finds the target of a pointer, or of one of the four paths.
 bool find_target(GltfFile* file, const tinygltf::AnimationChannel& channel, GltfTarget* target) {
   if (channel.target_path != "pointer") {
     for (int path = 0; path < 4; ++path)

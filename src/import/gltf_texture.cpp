@@ -48,7 +48,7 @@ std::uint32_t scene_texture(GltfFile* file, int index, TexelKind kind, int uv_se
       fail_import("sampler %d does not exist; export the file again", texture.sampler);
     sampler = file->model.samplers[static_cast<std::size_t>(texture.sampler)];
   }
-  // A sampler that names a filter without mip maps does not want them; without a filter, the choice is ours.
+  // A sampler that names a filter without mip maps gets none; without a filter, the choice is ours.
   const bool has_levels =
       sampler.minFilter != TINYGLTF_TEXTURE_FILTER_NEAREST && sampler.minFilter != TINYGLTF_TEXTURE_FILTER_LINEAR;
   const GltfFile::TexelUse use = {{texture.source, kind}, has_levels};

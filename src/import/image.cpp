@@ -11,7 +11,7 @@
 #include "import/import_error.h"
 #include "import/webp.h"
 
-// The largest block that the decoder may take, and whether it asked for more: a PNG may inflate to a thousand times its
+// Largest block that the decoder may allocate, and whether it asked for more: a PNG may inflate to a thousand times its
 // bytes, whatever its size in pixels.
 static thread_local std::size_t block_bytes_max = 0;
 static thread_local bool wants_more = false;
@@ -39,12 +39,12 @@ namespace pocketray {
 
 static_assert(STBI_MAX_DIMENSIONS == kTextureSideMax, "one limit");
 
-// Pixels that a byte can hold at most: deflate codes 1032 bytes in one [RFC 1951], and a byte has eight pixels of a
-// bit.
+// Upper bound of pixels per byte: deflate expands a byte to at most 1032 [RFC 1951], and a byte holds eight one-bit
+// pixels.
 constexpr std::uint64_t kBytePixelsMax = 8 * 1032;
 
-// What decoding needs at most at once: the samples as they are inflated, with a byte per row and room for those of
-// interlaced passes, or the pixels padded to the blocks of a JPEG; and of the file, twice what has been read.
+// Peak block of decoding: the inflated samples, with a byte per row and room for interlaced passes, or the pixels
+// padded to the blocks of a JPEG; and twice what has been read of the file.
 static std::size_t decoder_block_max(std::uint64_t width, std::uint64_t height, bool is_16_bit,
                                      std::size_t file_bytes) {
   const std::uint64_t padded = (width + 64) * (height + 64), samples = 4 * (is_16_bit ? 2 : 1) * padded;

@@ -15,10 +15,10 @@ struct Image {
   std::vector<std::uint32_t> texels;    // bytes R, G, B, A in memory; rows from the top
 };
 
-// Decodes an image; refuses one too large by its header. `name` is for the error line.
+// Decodes an image; refuses by its header one that is too large. `name` is for the error line.
 Image decode_image(SceneBuilder* builder, const Bytes& bytes, const std::string& name);
 
-// The same without a scene, for pictures of at most `pixel_count_max` pixels.
+// decode_image() without a scene, for pictures of at most `pixel_count_max` pixels.
 Status read_image(const Bytes& bytes, const std::string& name, std::size_t pixel_count_max, Image* image);
 
 // Box-halves width and height until neither exceeds `side_max`: colours in linear light, weighted by alpha. Odd sides

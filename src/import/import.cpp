@@ -21,7 +21,7 @@ bool is_gltf(const std::string& ending, const Bytes& bytes) {
   return ending == "gltf" || ending == "glb" || (bytes.size() >= 4 && std::memcmp(bytes.data(), "glTF", 4) == 0);
 }
 
-// Runs read(builder) in a child process and takes the scene that it makes.
+// Runs read(builder) in a child process and takes the resulting scene.
 template <class Read>
 void read_contained(const ContainerLimits& limits, const std::string& path, const ImportOptions& options, Read read,
                     ImportedScene* result) {
@@ -45,7 +45,7 @@ void import_by_assimp(const std::string& path, const std::string& ending, const 
   // Assimp needs up to about 30 times the size of a point or text file; a compressed one may first grow tenfold.
   std::uint64_t memory_bytes = (std::uint64_t(512) << 20) + 256 * static_cast<std::uint64_t>(bytes.size());
   memory_bytes = std::min(memory_bytes, 8 * options.byte_count_max + (std::uint64_t(256) << 20));
-  // A machine busy with other work may take ten times as long.
+  // On a busy machine, it may take ten times as long.
   const ContainerLimits limits = {memory_bytes, options.cpu_seconds_max, 10 * options.cpu_seconds_max,
                                   2 * options.byte_count_max};
   read_contained(
@@ -74,7 +74,7 @@ void import_any(const std::string& path, const ImportOptions& options, ImportedS
   if (!gltf && ending != "obj" && ending != "ply") {
     if (assimp_reads(ending)) return import_by_assimp(path, ending, bytes, options, result);
     if (ending == "blend") fail_import("it is a Blender project; export it as glTF (File, Export, glTF 2.0)");
-    if (ending == "pray") fail_import("it is baked already; bake the model it was made from");
+    if (ending == "pray") fail_import("it is already baked; bake the model it was made from");
     fail_import("no reader for '.%.20s' files; convert to one of: %s", ending.c_str(), import_formats().c_str());
   }
   if (gltf && names_draco(bytes)) return import_by_draco(path, bytes, options, result);

@@ -33,7 +33,7 @@ constexpr NumberRow kNumbers[] = {{"Ns", &MtlMaterial::shininess},     {"Ni", &M
 struct MapRow {
   const char* key;
   MtlMap MtlMaterial::*member;
-  const char* unused;  // what it is called if it is not used
+  const char* unused;  // its name in notes if it is not used
 };
 constexpr MapRow kMaps[] = {{"map_Kd", &MtlMaterial::diffuse_map, nullptr},
                             {"map_d", &MtlMaterial::opacity_map, nullptr},
@@ -110,7 +110,7 @@ class Reader {
     if (line->numbers(1, kFloatMax, &number) == 1) *value = number;
   }
 
-  // `d` counts before `Tr`, which some programs write as its opposite and some as its equal.
+  // `d` takes precedence over `Tr`, which some programs write as its complement and some as its equal.
   void read_opacity(ObjLine* line, bool is_d, MtlMaterial* material) {
     ObjLine words = *line;
     ObjWord word;
@@ -141,7 +141,7 @@ class Reader {
       note_unused(builder_, row.unused);
   }
 
-  // Numbers up to the first word that is none; keeps what follows. At least `count_min`.
+  // Reads at least `count_min` numbers up to the first other word; keeps what follows.
   static void read_values(ObjLine* line, int count_min, int count, float* values) {
     for (int i = 0; i < count; ++i) {
       const ObjLine before = *line;
@@ -185,7 +185,7 @@ class Reader {
         if (option.is("-clamp")) map->clamp = value.is("on");
         if (option.is("-imfchan")) map->channel = *value.begin;
         if (option.is("-cc") && value.is("on")) note_unused(builder_, "colour correction of maps (-cc)");
-      } else {  // a name that begins so
+      } else {  // a name that begins like an option
         *line = before;
         return;
       }
@@ -193,7 +193,7 @@ class Reader {
   }
 
   void name_unused(const std::string& statement) {
-    constexpr int kNamesMax = 8;  // chosen: a line that can be read
+    constexpr int kNamesMax = 8;  // chosen: keeps the line readable
     if (unused_count_ < kNamesMax && std::find(unused_.begin(), unused_.end(), statement) == unused_.end()) {
       ++unused_count_;
       unused_.push_back(statement);

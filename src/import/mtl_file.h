@@ -18,7 +18,7 @@ struct MtlMap {
 };
 
 struct MtlMaterial {
-  std::string name, file, path;  // the MTL file as the model names it, and where it is
+  std::string name, file, path;  // the MTL file as the model names it, and its path
   Vec3 diffuse = {0, 0, 0}, specular = {0, 0, 0}, transmittance = {0, 0, 0}, emission = {0, 0, 0};
   float shininess = 1, ior = 1, opacity = 1;
   float roughness = 0, metallic = 0, sheen = 0, coat = 0, coat_roughness = 0, anisotropy = 0, rotation = 0;
@@ -29,8 +29,8 @@ struct MtlMaterial {
   MtlMap diffuse_map, opacity_map, emission_map;
 };
 
-// Appends the file's materials. Throws ImportError for a number that is not finite, naming the line. Names statements
-// that are not used in the builder's warning.
+// Appends the file's materials. Throws ImportError for a number that is not finite, naming the line. The builder's
+// warning names unused statements.
 void read_mtl_file(const Bytes& bytes, const std::string& name, SceneBuilder* builder,
                    std::vector<MtlMaterial>* materials);
 

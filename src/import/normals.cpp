@@ -12,7 +12,7 @@
 namespace pocketray {
 namespace {
 
-// Above this many triangles around a position, averages all of them, as the pairwise test is quadratic.
+// With more triangles than this around a position, averages all of them, because the pairwise test is quadratic.
 constexpr std::size_t kValenceMax = 2048;
 // Directions closer than this count as the same plane: a few roundings of unit vectors.
 constexpr double kSameNormal = 4e-7;
@@ -66,7 +66,7 @@ bool is_other_plane(const Vec3d& normal, const Vec3d& own) {
   return dot(d, d) > kSameNormal * kSameNormal && !is_zero(normal);
 }
 
-// The corner's normal among all corners at its position, and among normals from elsewhere.
+// Normal of a corner from all corners at its position and from normals elsewhere.
 Vec3d corner_normal(const std::vector<Corner>& corners, std::uint32_t self, const std::uint32_t* around,
                     std::size_t count, double cos_crease, const Vec3d& elsewhere, bool* flat) {
   const Vec3d& own = corners[self].normal;

@@ -11,9 +11,9 @@ namespace pocketray {
 // as one, however they are indexed; vertices whose corners differ are duplicated. A mesh that is flat everywhere keeps
 // no normals.
 // `groups`, one per triangle, are OBJ's smoothing groups (obj_file.h): triangles of one group are smoothed at any
-// angle, those of kFlatGroup not at all, and those of kNoGroup as above; none are smoothed with another group's.
-// `elsewhere(vertex, group)`: the sum of further normals around a vertex of the mesh that belong to a group, weighted
-// by angle.
+// angle, those of kFlatGroup not at all, those of kNoGroup as above; no triangle is smoothed with another group's.
+// `elsewhere(vertex, group)` returns the angle-weighted sum of further normals around a vertex of the mesh that belong
+// to a group.
 using NormalsElsewhere = std::function<Vec3d(std::uint32_t vertex, std::uint32_t group)>;
 void smooth_normals(MeshData* mesh, float crease_degrees, const std::vector<std::uint32_t>* groups = nullptr,
                     const NormalsElsewhere& elsewhere = nullptr);

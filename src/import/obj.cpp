@@ -19,7 +19,7 @@
 namespace pocketray {
 namespace {
 
-// Reads the MTL files that the model names, and the one named as the model itself where there is none of these.
+// Reads the MTL files that the model names or, if none exists, the one named like the model.
 class MaterialFiles {
  public:
   MaterialFiles(const std::string& scene_path, SceneBuilder* builder) : scene_path_(scene_path), builder_(builder) {}
@@ -32,7 +32,7 @@ class MaterialFiles {
   }
 
  private:
-  // Names may have spaces, so the whole line counts first, then each word.
+  // Names may contain spaces, so the whole line is tried first, then each word.
   void read_line(const std::string& line) {
     std::string whole = line;
     for (std::size_t at; (at = whole.find("\\ ")) != whole.npos;) whole.erase(at, 1);
@@ -52,7 +52,7 @@ class MaterialFiles {
     if (!is_any) errors_.push_back(error);
   }
 
-  // Only if it exists.
+  // Reads the file named like the model, if it exists.
   void read_own() {
     const std::string name = path_stem(scene_path_) + ".mtl";
     std::string error;
@@ -106,7 +106,7 @@ class CornerIndex {
     const std::size_t p = static_cast<std::size_t>(corner.position);
     for (std::uint32_t at = head_[p]; at != kNone; at = next_[at])
       if (corners_[at].normal == corner.normal && corners_[at].uv == corner.uv) return at;
-    // Vertices where polygons cross themselves are no corner's.
+    // Vertices where polygons cross themselves belong to no corner.
     corners_.resize(mesh->positions.size(), {kNoElement, kNoElement, kNoElement});
     next_.resize(mesh->positions.size(), kNone);
     const std::uint32_t made = static_cast<std::uint32_t>(corners_.size());
@@ -130,7 +130,7 @@ class CornerIndex {
     return made;
   }
 
-  // Of a vertex of the mesh, an index into the file's; kNoElement where polygons cross themselves.
+  // Index into the file's positions of a vertex of the mesh; kNoElement where polygons cross themselves.
   std::int32_t position(std::uint32_t vertex) const {
     return vertex < corners_.size() ? corners_[vertex].position : kNoElement;
   }
@@ -163,7 +163,7 @@ bool uses_uvs(const SceneBuilder& builder, std::uint32_t index) {
   return index < out.grains.size() && has_strength(out.grains[index]);
 }
 
-// `materials`: the scene's, by the file's names. `groups` gets the smoothing group of each triangle.
+// `materials` maps the file's names to the scene's. `groups` receives the smoothing group of each triangle.
 MeshData shape_mesh(const ObjShape& shape, const ObjFile& file, const std::vector<std::uint32_t>& materials,
                     CornerIndex* index, SceneBuilder* builder, std::vector<std::uint32_t>* groups) {
   MeshData mesh;
@@ -198,7 +198,7 @@ MeshData shape_mesh(const ObjShape& shape, const ObjFile& file, const std::vecto
   return mesh;
 }
 
-// Gives the mesh of a shape normals where the file has none.
+// Adds normals to a shape's mesh where the file has none.
 void smooth(const ObjFile& file, const ObjSurfaces& surfaces, std::size_t shape, const CornerIndex& index,
             const std::vector<std::uint32_t>& groups, float crease_angle, MeshData* mesh) {
   if (!mesh->normals.empty()) return;
@@ -210,7 +210,7 @@ void smooth(const ObjFile& file, const ObjSurfaces& surfaces, std::size_t shape,
   });
 }
 
-// The scene's materials by the file's names, and behind them the one of faces without a name.
+// Returns the scene's materials by the file's names, followed by the one for faces without a name.
 std::vector<std::uint32_t> find_materials(const ObjFile& file, const std::vector<MtlMaterial>& materials,
                                           std::uint32_t default_material, SceneBuilder* builder) {
   std::unordered_map<std::string, std::uint32_t> by_name;
@@ -226,7 +226,7 @@ std::vector<std::uint32_t> find_materials(const ObjFile& file, const std::vector
   return found;
 }
 
-// The scene's origin in the file's coordinates; zero where the model is near.
+// Returns the scene's origin in the file's coordinates; zero if the model is near it.
 Vec3d choose_origin(const ObjFile& file, const Transform& turn, SceneBuilder* builder) {
   const std::size_t count = file.positions.size() / 3;
   const double* p = file.positions.data();

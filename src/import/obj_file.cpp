@@ -38,7 +38,7 @@ class Reader {
   }
 
  private:
-  // A number, or NaN for one that is not finite or too large.
+  // Returns a number, or NaN if it is not finite or too large.
   float value(const ObjLine& line, const ObjWord& word, float limit) const {
     float number;
     if (!builder_.options.strict && read_number(word, &number) && !(std::fabs(number) <= limit)) return kNan;
@@ -82,7 +82,7 @@ class Reader {
     values->insert(values->end(), all, all + count);
   }
 
-  // An index of a list of `count` elements, counted from 1, or from its end if negative.
+  // Index into a list of `count` elements, counted from 1, or from its end if negative.
   std::int32_t index(const ObjLine& line, const char*& at, const char* end, std::size_t count) const {
     const char* begin = at;
     const bool negative = at < end && *at == '-';
@@ -124,7 +124,7 @@ class Reader {
   }
 
   void name_file(const std::string& name) {
-    constexpr std::size_t kFilesMax = 64;  // chosen: each is looked for in several places
+    constexpr std::size_t kFilesMax = 64;  // chosen: each is searched for in several places
     std::vector<std::string>& all = file_.material_files;
     if (all.size() < kFilesMax && std::find(all.begin(), all.end(), name) == all.end()) all.push_back(name);
   }
@@ -145,7 +145,7 @@ class Reader {
   }
 
   void name_unknown(const std::string& name) {
-    constexpr std::size_t kNamesMax = 8;  // chosen: a line that can be read
+    constexpr std::size_t kNamesMax = 8;  // chosen: keeps the line readable
     std::vector<std::string>& all = file_.unknown;
     if (all.size() < kNamesMax && std::find(all.begin(), all.end(), name) == all.end()) all.push_back(name);
   }

@@ -11,7 +11,7 @@ namespace pocketray {
 
 constexpr std::int32_t kNoElement = -1;
 struct ObjCorner {
-  std::int32_t position, uv, normal;  // from 0; the last two may be kNoElement or beyond the file's
+  std::int32_t position, uv, normal;  // from 0; the last two may be kNoElement or out of range
 };
 
 // Smoothing groups of faces: none stated in the file so far, `s off`, or a number from 1 on.

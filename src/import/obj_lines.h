@@ -1,4 +1,4 @@
-// Lines, words and numbers of OBJ and MTL texts. Numbers are read strictly, and damage is refused by line (HARDCASES
+// Lines, words and numbers of OBJ and MTL texts. Numbers are parsed strictly, and damage is reported by line (HARDCASES
 // row 8).
 #pragma once
 #include <cstddef>
@@ -15,18 +15,18 @@ struct ObjWord {
   bool is(const char* text) const;
 };
 
-// A line without its comment: '#' begins one at the line's begin and after a blank, and ends words, but not names.
+// A line without its comment: '#' starts one at the beginning or after a blank, and ends words, but not names.
 class ObjLine {
  public:
   // `file` is named in errors; empty: the scene file itself.
   ObjLine(const char* begin, const char* end, std::size_t number, const char* file);
   bool next(ObjWord* word);
-  // What is left, without blanks at its ends; a name may have blanks inside.
+  // Returns the rest without blanks at its ends; a name may contain blanks.
   std::string rest();
-  // The word as a number of at most `limit`; refuses any other.
+  // Parses the word as a number of at most `limit`; refuses any other.
   float number(const ObjWord& word, float limit) const;
-  // The next `count` words as numbers; refuses other words, and a number that is not finite behind them. Returns how
-  // many there are.
+  // Parses up to `count` words as numbers; refuses other words, and a non-finite number after them. Returns how many it
+  // parsed.
   int numbers(int count, float limit, float* values);
   [[noreturn]] void refuse(const std::string& what) const;
   std::size_t number() const { return number_; }
@@ -40,7 +40,7 @@ class ObjLine {
 // True if the word is a decimal number, [+-]digits[.digits][e[+-]digits]; stores it, infinite if it is too large.
 bool read_number(const ObjWord& word, double* value);
 bool read_number(const ObjWord& word, float* value);
-// True if the word says NaN, infinity or a number too large for a float.
+// Returns whether the word is NaN, infinity or a number too large for a float.
 bool is_not_finite(const ObjWord& word);
 
 // Calls visit(ObjLine*) for each line. Lines end in LF, CR LF or CR.

@@ -27,7 +27,7 @@ Bytes read_named(const std::vector<std::string>& bases, const std::string& name,
   const std::size_t slash = name.find_last_of("/\\:");
   const std::string last = slash == name.npos ? "" : name.substr(slash + 1);
   if (!last.empty() && try_beside(bases, last, byte_count_max, &builder->files, &bytes, path, &error)) {
-    note_remark(builder, "files named in folders that do not exist are taken from beside the model");
+    note_remark(builder, "files in missing folders are read from beside the model instead");
     return bytes;
   }
   fail_import("%s", error.c_str());

@@ -7,8 +7,8 @@
 
 namespace pocketray {
 
-// Reads the file `name`, looked for beside each of `bases` in turn, then by the last part of its name, which is
-// remarked. Throws the first attempt's ImportError if there is none. Stores its path.
+// Reads the file `name`, searched for beside each of `bases` in turn, then by the last part of its name, with a remark.
+// Throws the first attempt's ImportError if there is none. Stores its path.
 Bytes read_named(const std::vector<std::string>& bases, const std::string& name, std::uint64_t byte_count_max,
                  SceneBuilder* builder, std::string* path);
 

@@ -36,7 +36,7 @@ std::uint8_t value_of(const Rgba& t, char channel) {
   return t.c[channel == 'g' ? 1 : channel == 'b' ? 2 : 0];
 }
 
-// The texel at (u, v), from 0 to 1 downward.
+// Returns the texel at (u, v), from 0 to 1 downward.
 std::uint32_t texel(const Image& image, double u, double v, bool clamps) {
   auto place = [clamps](double at, std::uint32_t size) {
     const double whole = (clamps ? std::min(std::max(at, 0.0), 1.0) : at - std::floor(at)) * size;
@@ -49,13 +49,13 @@ bool is_same(const MtlMap& a, const MtlMap& b) {
   return std::equal(a.scale, a.scale + 2, b.scale) && std::equal(a.offset, a.offset + 2, b.offset);
 }
 
-// A whole number from 1 to 64, by which b repeats within a; 0: none.
+// Whole number of times, from 1 to 64, that b repeats within a; 0: none.
 std::uint32_t repetitions(float a, float b) {
   const double ratio = static_cast<double>(b) / static_cast<double>(a);
   return ratio >= 1 && ratio <= 64 && ratio == std::floor(ratio) ? static_cast<std::uint32_t>(ratio) : 0;
 }
 
-// Where `inner` shows what `outer` shows at `at`, downward.
+// Coordinate in `inner` that corresponds to `at` in `outer`, downward.
 double place_in(const MtlMap& outer, const MtlMap& inner, int axis, double at) {
   if (outer.scale[axis] == inner.scale[axis] && outer.offset[axis] == inner.offset[axis]) return at;
   const double upward = axis == 0 ? at : 1 - at;
@@ -103,7 +103,7 @@ bool put_mask(const Image& mask, const MtlMap& mask_map, bool has_color, Image* 
       made.width = std::min(std::max(made.width, repeated.width * times[0]), side_max);
       made.height = std::min(std::max(made.height, repeated.height * times[1]), side_max);
     } else {
-      note_remark(builder, "a map_d is placed as its map_Kd, since neither repeats within the other");
+      note_remark(builder, "a map_d is placed like its map_Kd, since neither repeats within the other");
       inner = *map;
     }
   }

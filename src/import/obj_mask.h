@@ -9,9 +9,9 @@ void make_opaque(Image* image);
 // -mm base gain: colours become base + gain × value.
 void apply_range(const MtlMap& map, Image* image);
 
-// Puts the mask into the alpha of `image`, which is *map's, or becomes white if there is none. The mask is its alpha
-// where it has one, or the channel that -imfchan names. Where the options of both maps differ, the image gets as many
-// repetitions as the mask needs, and *map the options for it. True if every alpha is 0 or 255.
+// Puts the mask into the alpha of `image`, which is *map's, or becomes white if there is none. The mask is its own
+// alpha if it has one, or the channel named by -imfchan. If the options of the maps differ, the image gets as many
+// repetitions as the mask needs, and *map the matching options. Returns true if every alpha is 0 or 255.
 bool put_mask(const Image& mask, const MtlMap& mask_map, bool has_color, Image* image, MtlMap* map,
               SceneBuilder* builder);
 

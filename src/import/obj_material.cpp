@@ -3,11 +3,11 @@
 //   3, 5, 8     mirror Ks (5: instead of Fresnel's rise to 1, which Ks of a metal hardly has)
 //   6, 7        glass: transmits Tf (1 where absent), index of refraction Ni, mirror by Fresnel
 //   any         emission Ke; opacity d = 1 − Tr, times map_d
-// Models 4 and 9 are glass, too, by the specification; programs write them for opaque materials, Maya for all.
-// A material without Kd has its map's colours, or the default grey where nothing else makes it visible.
-// With Pr or Pm (the extension for physically based rendering, as Blender exports it), all but glass is glTF's
-// metallic-roughness material of base colour Kd. `aniso` and `anisor`, a turn being 1, are a grain along u: of that
-// material, or of Ward's lobe, which then stands in for Phong's of Ns with α = 1/√(2(Ns + 2)), as high and as wide.
+// Models 4 and 9 are glass, too, by the specification; programs write them for opaque materials, Maya for all. A
+// material without Kd takes its map's colours, or the default grey if nothing else makes it visible.
+// With Pr or Pm (the extension for physically based rendering, as Blender exports it), all but glass becomes glTF's
+// metallic-roughness material of base colour Kd. `aniso` and `anisor` (1 is a full turn) give a grain along u: to that
+// material, or to Ward's lobe, which then replaces Phong's of Ns with α = 1/√(2(Ns + 2)), as high and as wide.
 // `Pc` and `Pcr` are the strength and the roughness of a clear coat over any material.
 #include "import/obj_material.h"
 
@@ -34,7 +34,7 @@ Vec3 bounded3(const Vec3& c, float high) {
   return {bounded(c.x, 0, high), bounded(c.y, 0, high), bounded(c.z, 0, high)};
 }
 
-// False, with a remark, if the image cannot be loaded; the scene is still worth showing.
+// Returns false, with a remark, if the image cannot be loaded; the scene is still worth showing.
 bool load(SceneBuilder* builder, const std::string& scene_path, const MtlMaterial& source, const MtlMap& map,
           Image* image) {
   if (map.name.empty()) return false;

@@ -10,7 +10,7 @@ namespace {
 
 bool is_smooth(const ObjFace& face) { return face.group != kNoGroup && face.group != kFlatGroup; }
 
-// True if all corners refer to a position, and none to a normal.
+// Returns whether all corners refer to a position, and none to a normal.
 bool wants_normals(const ObjFile& file, const ObjFace& face) {
   for (std::uint32_t c = face.corner_begin; c < face.corner_end; ++c)
     if (static_cast<std::size_t>(file.corners[c].position) >= file.positions.size() / 3 || file.corners[c].normal >= 0)

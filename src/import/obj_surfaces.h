@@ -1,5 +1,5 @@
-// Smoothing groups of an OBJ file whose surfaces go on from one `g` or `o` to the next: faces of several shapes with
-// one group and one vertex line. Vertices that merely lie at one place belong to separate surfaces.
+// Smoothing groups whose surfaces continue from one `g` or `o` of an OBJ file to the next: faces of several shapes with
+// a common group and a common vertex line. Coincident vertices belong to separate surfaces.
 #pragma once
 #include <vector>
 
@@ -10,7 +10,7 @@ namespace pocketray {
 class ObjSurfaces {
  public:
   explicit ObjSurfaces(const ObjFile& file);
-  // The normals of the faces around a position that belong to the group but to other shapes, weighted by angle; zero if
+  // Angle-weighted sum of the normals of faces around a position that belong to the group but to other shapes; zero if
   // there are none.
   Vec3d normals_elsewhere(std::size_t position, std::size_t shape, std::uint32_t group) const;
 
@@ -23,8 +23,8 @@ class ObjSurfaces {
   void find_shared(const ObjFile& file);
   void add_face(const ObjFile& file, const ObjFace& face, std::size_t shape);
 
-  std::vector<bool> is_shared_;      // by position; empty: none is
-  std::vector<std::uint32_t> head_;  // of the corners of shared positions
+  std::vector<bool> is_shared_;      // by position; empty: none is shared
+  std::vector<std::uint32_t> head_;  // first corner, by shared position
   std::vector<Corner> corners_;
 };
 

@@ -18,7 +18,7 @@ void refuse_utf16(const Bytes& text) {
   if (mark || wide) fail_import("the text is UTF-16; save it as UTF-8 or ASCII");
 }
 
-// Whether a line begins at `at` whose lists of indices may end in slashes.
+// Returns whether a line whose lists of indices may end in slashes begins at `at`.
 bool has_corners(const Bytes& text, std::size_t at) {
   while (at < text.size() && is_blank(text[at])) ++at;
   return at + 1 < text.size() && (text[at] == 'f' || text[at] == 'l') && is_blank(text[at + 1]);
@@ -29,7 +29,7 @@ bool is_comment(const Bytes& text, std::size_t at) {
   return at < text.size() && text[at] == '#';
 }
 
-// Number of bytes of the line end at `at`.
+// Returns the number of bytes of the line end at `at`.
 std::size_t line_end_size(const Bytes& text, std::size_t at) {
   if (at >= text.size() || !is_line_end(text[at])) return 0;
   return text[at] == '\r' && at + 1 < text.size() && text[at + 1] == '\n' ? 2 : 1;

@@ -1,4 +1,4 @@
-// Forms of OBJ and MTL text that are rewritten before they are read.
+// Rewrites variants of OBJ and MTL text before parsing.
 #pragma once
 #include "import/files.h"
 

@@ -10,7 +10,7 @@
 namespace pocketray {
 namespace {
 
-// The number with the fewest decimals, or the most zeros, within `error` of x: a model's offset is mostly such a one.
+// Number with the fewest decimals, or the most trailing zeros, within `error` of x: offsets of models are mostly such.
 double rounded_within(double x, double error) {
   for (double unit = 1e7; unit >= 1; unit /= 10)
     if (std::fabs(std::floor(x / unit + 0.5) * unit - x) <= error) return std::floor(x / unit + 0.5) * unit;
@@ -19,7 +19,7 @@ double rounded_within(double x, double error) {
   return x;
 }
 
-// The value that a share of the samples' weight lies below.
+// Weighted quantile: the value below which a share of the samples' weight lies.
 template <class Value>
 double quantile(const std::vector<ExactExtent::Sample>& samples, double share, Value value) {
   std::vector<std::pair<double, double>> sorted;  // value, weight
@@ -37,7 +37,7 @@ double quantile(const std::vector<ExactExtent::Sample>& samples, double share, V
 
 // Bounds without the outermost twentieth on each side.
 ExactBox bounds_of_most(const std::vector<ExactExtent::Sample>& samples) {
-  constexpr double kLeftOut = .05;  // chosen: more than strays, less than a part worth its place
+  constexpr double kLeftOut = .05;  // chosen: more than strays, less than a part that matters
   ExactBox box;
   for (int c = 0; c < 3; ++c) {
     auto value = [&](const Vec3d& place) { return place[c]; };
@@ -46,7 +46,7 @@ ExactBox bounds_of_most(const std::vector<ExactExtent::Sample>& samples) {
   return box;
 }
 
-// How far rounding moves the median place.
+// Displacement of the median position by rounding.
 double median_error(const std::vector<ExactExtent::Sample>& samples, const Vec3d& origin) {
   return quantile(samples, .5, [&](const Vec3d& place) {
     const Vec3d left = place - origin;
@@ -61,7 +61,7 @@ Vec3d middle_of(const ExactBox& bounds) {
   return middle;
 }
 
-// False where the model stays where it is.
+// Returns false if the model stays where it is.
 bool find_origin(const ExactExtent& extent, Vec3d* origin) {
   if (extent.samples.empty()) return false;
   const bool all = is_far(extent.bounds, extent.triangle_count);
@@ -75,7 +75,7 @@ bool find_origin(const ExactExtent& extent, Vec3d* origin) {
 
 bool is_far(const ExactBox& bounds, double triangle_count) {
   // A typical edge must lose its last 10 of 24 bits, and the model must be farther away than twice its size: so most of
-  // the loss is the offset's, and ordinary models keep their bits.
+  // the loss comes from the offset, and ordinary models keep their bits.
   constexpr double kLossMax = 0x1p-10, kDistanceMin = 2;
   const Vec3d size = bounds.high - bounds.low, middle = (bounds.low + bounds.high) * 0.5;
   if (!is_exact_coordinate(bounds.low) || !is_exact_coordinate(bounds.high)) return false;
@@ -93,7 +93,7 @@ Vec3d choose_origin(const ExactExtent& extent, SceneBuilder* builder) {
   char told[200];
   std::snprintf(told, sizeof told,
                 "the model is far from the origin, so it is moved by (%.12g, %.12g, %.12g) to keep its shape; --camera "
-                "and --aov position count from its own origin",
+                "and --aov position use its own coordinates",
                 -origin.x, -origin.y, -origin.z);
   note_remark(builder, told);
   return origin;

@@ -6,8 +6,8 @@
 
 namespace pocketray {
 
-// Where a model lies in the scene's axes, before rounding: the bounds of all of it, and some of its places, each with
-// how many of its triangles it stands for.
+// Extent of a model in the scene's axes, before rounding: the bounds of all of it, and some of its positions, each
+// weighted by the number of triangles that it represents.
 struct ExactExtent {
   struct Sample {
     Vec3d place;
@@ -17,7 +17,7 @@ struct ExactExtent {
   std::vector<Sample> samples;
   double triangle_count = 0;
 };
-// Adds `count` points: at(i), placed by `to_world`. Leaves out those that no face can use.
+// Adds `count` points: at(i), placed by `to_world`. Skips points that no face can use.
 template <class At>
 void add_points(ExactExtent* extent, std::size_t count, At at, const ExactTransform& to_world, double triangle_count) {
   if (count == 0) return;
@@ -33,18 +33,18 @@ void add_points(ExactExtent* extent, std::size_t count, At at, const ExactTransf
   extent->triangle_count += triangle_count;
 }
 
-// Whether rounding the coordinates of a model with these bounds and that many triangles would bend it.
+// Returns whether rounding would distort a model with these bounds and this number of triangles.
 bool is_far(const ExactBox& bounds, double triangle_count);
 
-// The scene's origin in its own coordinates: zero, or the middle of the bounds where the model is far; where most of it
-// is far and a few parts are not, the middle of most, if rounding costs the median place less then. Tells so.
+// Returns the scene's origin in its own coordinates: zero, or the middle of the bounds if the model is far; if most of
+// it is far and a few parts are not, the middle of most, if the median position then loses less. Adds a note.
 Vec3d choose_origin(const ExactExtent& extent, SceneBuilder* builder);
 // Zero if none was chosen.
 Vec3d origin_of(const SceneBuilder& builder);
 
-// The vector that `turn`, a permutation of axes, leads to `v`.
+// Returns the vector that `turn`, a permutation of axes, maps to `v`.
 Vec3d turned_back(const Transform& turn, const Vec3d& v);
-// Chooses the origin for these positions, and where there is one, replaces `rounded` by what is left of them.
+// Chooses the origin for these positions and, if there is one, replaces `rounded` by the remainders.
 void recentre(const std::vector<Vec3d>& positions, const Transform& turn, double triangle_count, SceneBuilder* builder,
               std::vector<Vec3>* rounded);
 

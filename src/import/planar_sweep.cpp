@@ -110,7 +110,7 @@ bool PlanarSweep::triangulate(const std::vector<Vec2>& loop, std::size_t crossin
   return false;
 }
 
-// By the even-odd rule, two equal edges are none.
+// By the even-odd rule, two equal edges cancel.
 void PlanarSweep::cancel_pairs() {
   std::vector<Edge> all = std::move(edges_);
   for (Edge& edge : all)
@@ -159,7 +159,7 @@ void PlanarSweep::end_pass() {
   unite_equal_points();
 }
 
-// Without this, edges between such points may be split at one and at the other in turn, for ever.
+// Without this, edges between such points may be split at one and the other in turn, forever.
 void PlanarSweep::unite_equal_points() {
   if (equal_.empty()) return;
   std::vector<std::uint32_t> stands_for(points_.size());
@@ -176,7 +176,7 @@ void PlanarSweep::unite_equal_points() {
   for (std::uint32_t& point : points_of_corners_) point = resolved(point);
 }
 
-// Ends the edges that arrive; splits those that pass through the point.
+// Ends the arriving edges; splits those that pass through the point.
 void PlanarSweep::take_arriving(std::uint32_t point, Status::iterator first, Status::iterator last) {
   arriving_.assign(first, last);
   for (std::uint32_t e : arriving_) {
@@ -189,7 +189,7 @@ void PlanarSweep::take_arriving(std::uint32_t point, Status::iterator first, Sta
   }
 }
 
-// Sorts the edges that leave from below; where two overlap, the longer leaves from the shorter's end instead.
+// Sorts the leaving edges from below; where two overlap, the longer leaves from the shorter's end instead.
 void PlanarSweep::take_leaving(std::uint32_t point) {
   leaving_.clear();
   for (std::uint32_t e = first_out_[point]; e != kNone; e = edges_[e].next_out) leaving_.push_back(e);
@@ -252,8 +252,8 @@ void PlanarSweep::split_where_crossing(std::uint32_t a, std::uint32_t b, std::ui
   split(b, at, now);
 }
 
-// An end of `edge` that lies within two roundings of `line` and between its ends; kNone: none. Edges a rounding apart
-// would cross again next to every rounded crossing.
+// Returns an end of `edge` that lies within two roundings of `line` and between its ends; kNone: none. Edges a rounding
+// apart would cross again next to every rounded crossing.
 std::uint32_t PlanarSweep::end_on(const Edge& line, const Edge& edge) const {
   const Vec2 &a = points_[line.low], &b = points_[line.high];
   const double u = static_cast<double>(b.x) - static_cast<double>(a.x),
@@ -268,7 +268,7 @@ std::uint32_t PlanarSweep::end_on(const Edge& line, const Edge& edge) const {
   return kNone;
 }
 
-// Notes that the point and an end of the edge are one, if they are two roundings apart at most.
+// Notes that the point and an end of the edge are equal, if they are at most two roundings apart.
 void PlanarSweep::note_equal(const Edge& edge, std::uint32_t point) {
   const Vec2& p = points_[point];
   for (std::uint32_t end : {edge.low, edge.high}) {
@@ -279,7 +279,7 @@ void PlanarSweep::note_equal(const Edge& edge, std::uint32_t point) {
   }
 }
 
-// At once if the sweep is still to come to the point, else for the next pass.
+// Splits at once if the sweep has not yet reached the point, else in the next pass.
 void PlanarSweep::split(std::uint32_t e, std::uint32_t point, std::uint32_t now) {
   const Edge edge = edges_[e];
   if (point == edge.low || point == edge.high || edge.is_split) return;
@@ -292,8 +292,8 @@ void PlanarSweep::split(std::uint32_t e, std::uint32_t point, std::uint32_t now)
   }
 }
 
-// The intervals between arriving edges close; those between leaving edges open; the ones below and above the point
-// take it into their chains.
+// Closes the intervals between arriving edges and opens those between leaving edges; the intervals below and above the
+// point add it to their chains.
 void PlanarSweep::advance_chains(std::uint32_t point, std::uint32_t below) {
   bool inside = below != kNone && edges_[below].inside_above;
   Chain high = {};
@@ -305,7 +305,7 @@ void PlanarSweep::advance_chains(std::uint32_t point, std::uint32_t below) {
   const bool inside_top = arriving_.empty() ? inside : edges_[arriving_.back()].inside_above;
   if (leaving_.empty()) {
     if (!inside || !inside_top || arriving_.empty()) return;
-    // Both chains end at the point: one.
+    // Both chains end at the point and become one.
     push_low(&high, point);
     Chain& low = edges_[below].chain;
     const std::uint32_t second = nodes_[high.low].above;
@@ -332,7 +332,7 @@ std::uint32_t PlanarSweep::add_node(std::uint32_t point) {
   return static_cast<std::uint32_t>(nodes_.size() - 1);
 }
 
-// Cuts off the triangles that the point sees from the chain's upper end.
+// Cuts off the triangles visible from the point at the chain's upper end.
 void PlanarSweep::push_high(Chain* chain, std::uint32_t point) {
   std::uint32_t last = chain->high;
   for (std::uint32_t before; (before = nodes_[last].below) != kNone; last = before) {
@@ -359,7 +359,7 @@ void PlanarSweep::push_low(Chain* chain, std::uint32_t point) {
   chain->low = chain->recent = node;
 }
 
-// A point that no edge arrives at sees the chain's most recent one; both parts keep that.
+// A point without arriving edges sees the chain's most recent one; both parts keep that one.
 PlanarSweep::Chain PlanarSweep::take_above_recent(Chain* chain) {
   const std::uint32_t copy = add_node(nodes_[chain->recent].point), above = nodes_[chain->recent].above;
   Chain upper = {copy, copy, copy};
@@ -372,7 +372,7 @@ PlanarSweep::Chain PlanarSweep::take_above_recent(Chain* chain) {
   return upper;
 }
 
-// A fan about the point, which sees all of the chain: a concave chain with sides on both edges that end here.
+// Makes a fan around the point, which sees the whole chain: concave, with sides on both edges that end here.
 void PlanarSweep::close(const Chain& chain, std::uint32_t point) {
   std::uint32_t node = chain.low;
   for (std::uint32_t above; (above = nodes_[node].above) != kNone; node = above)

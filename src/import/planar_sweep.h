@@ -1,7 +1,7 @@
-// Triangles of a polygon in the plane, by the even-odd rule. One sweep from left to right triangulates on its way
-// [Hertel & Mehlhorn 1983, "Fast triangulation of simple polygons"]: each interval between two edges that is inside
-// keeps the chain of corners that its next corner will see. Signs of areas are exact, so neither collinear corners nor
-// slivers confuse it. Edges that cross, touch or overlap are split and the sweep repeated until none do.
+// Triangulates a polygon in the plane by the even-odd rule, in one sweep from left to right [Hertel & Mehlhorn 1983,
+// "Fast triangulation of simple polygons"]: each interval between two edges that is inside keeps the chain of corners
+// that its next corner will see. Signs of areas are exact, so neither collinear corners nor slivers confuse it. Edges
+// that cross, touch or overlap are split and the sweep repeated until none do.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -29,8 +29,8 @@ class PlanarSweep {
   PlanarSweep(const PlanarSweep&) = delete;
   PlanarSweep& operator=(const PlanarSweep&) = delete;
 
-  // Triangulates the closed loop, once; false if its edges cross more than `crossing_count_max` times. Time grows with
-  // n log n, n being the number of corners and crossings.
+  // Triangulates the closed loop, once; returns false if its edges cross more than `crossing_count_max` times. Takes
+  // O(n log n) time for n corners and crossings.
   bool triangulate(const std::vector<Vec2>& loop, std::size_t crossing_count_max);
 
   const std::vector<Vec2>& points() const { return points_; }  // distinct
@@ -48,8 +48,8 @@ class PlanarSweep {
   };
   struct Edge {
     std::uint32_t low, high;  // points, in the order of the sweep
-    std::uint32_t corner;     // that it begins at in the loop
-    std::uint32_t next_out;   // of those that begin at the same point
+    std::uint32_t corner;     // at which it begins in the loop
+    std::uint32_t next_out;   // next edge that begins at this point
     bool inside_above, is_split;
     Chain chain;  // of the interval above, if that is inside
   };
@@ -109,7 +109,7 @@ class PlanarSweep {
   std::vector<Split> splits_;                      // for the next pass
   std::vector<std::uint32_t> arriving_, leaving_;  // edges at the point visited, from below
   Status status_{Below{this}};
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> equal_;  // points that the next pass takes for one
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> equal_;  // points to merge in the next pass
   std::size_t edge_count_max_ = 0;
   bool is_planar_ = true;  // so far in this pass: no edges cross, touch or overlap
 };

@@ -56,7 +56,7 @@ Slot slot_of(const PlyProperty& property) {
   return kSlotCount;
 }
 
-// Integers count up to their type's largest value; floats up to 1.
+// Integer types use their largest value; floats 1.
 double largest(const PlyType& type) {
   return type.is_float ? 1 : static_cast<double>((std::uint64_t(1) << (8 * type.bytes - type.is_signed)) - 1);
 }
@@ -67,7 +67,7 @@ void skip_property(const PlyProperty& property, std::uint64_t element, PlyNumber
 
 constexpr double kFloatMax = static_cast<double>(std::numeric_limits<float>::max());
 
-// Three values from values[first] on, as floats. With `strict`, throws for one beyond the limit.
+// Returns three values from values[first] on, as floats. With `strict`, throws for one beyond the limit.
 Vec3 checked(const double* values, Slot first, double limit, const char* what, std::uint64_t vertex, bool strict) {
   for (int i = first; i < first + 3; ++i)
     if (strict && !(std::fabs(values[i]) <= limit))
@@ -92,7 +92,7 @@ Rgba16 color_of(const double* values) {
   return {linear(values[kRed]), linear(values[kGreen]), linear(values[kBlue]), to_16(values[kAlpha])};
 }
 
-// A number as it counts in its slot: colours from 0 to 1.
+// Scales a number for its slot: colours to 0 to 1.
 double slot_value(const PlyProperty& property, Slot slot, PlyNumbers* numbers) {
   const bool is_color = slot >= kRed && slot <= kAlpha;
   return numbers->next(*property.value) / (is_color ? largest(*property.value) : 1);
@@ -137,7 +137,7 @@ void read_vertices(const PlyElement& element, const Transform& turn, SceneBuilde
            &mesh->positions);  // a mesh has two triangles per vertex
 }
 
-// The vertices of a face or strip as they come, with kNone for the -1 that restarts a strip.
+// Returns the next vertex of a face or strip, with kNone for the -1 that restarts a strip.
 std::uint32_t next_vertex(const PlyType& type, const PlyHeader& header, bool strip, std::uint64_t element,
                           PlyNumbers* numbers) {
   double vertex = numbers->next(type);
@@ -159,8 +159,8 @@ void read_face(const PlyProperty& corners, const PlyHeader& header, std::uint64_
     faces->corners.push_back(next_vertex(*corners.value, header, false, face, numbers));
 }
 
-// Each vertex makes a triangle with the two before it; every second triangle turns the other way. Triangles with two
-// equal vertices only connect parts of a strip.
+// Each vertex makes a triangle with the two before it; every second triangle is reversed. Triangles with two equal
+// vertices only connect parts of a strip.
 void read_strip(const PlyProperty& corners, const PlyHeader& header, std::uint64_t strip, const SceneBuilder& builder,
                 PlyNumbers* numbers, PlyFaces* faces) {
   std::uint64_t count = numbers->next_count(*corners.count, strip), since_restart = 0;
@@ -183,7 +183,7 @@ void read_strip(const PlyProperty& corners, const PlyHeader& header, std::uint64
   }
 }
 
-// A list of numbers, or the one number of a property without a count.
+// Reads a list of numbers, or the single number of a property without a count.
 std::vector<double> read_list(const PlyProperty& property, std::uint64_t element, const SceneBuilder& builder,
                               PlyNumbers* numbers) {
   const std::uint64_t count = property.count ? numbers->next_count(*property.count, element) : 1;
@@ -242,7 +242,7 @@ void read_strips(const PlyElement& element, const PlyHeader& header, const Scene
         skip_property(property, i, numbers);
 }
 
-// One material for each texture that the header names, or one without.
+// Adds a material per texture named in the header, or one without a texture.
 std::uint32_t add_materials(const std::string& path, const PlyHeader& header, SceneBuilder* builder) {
   std::uint32_t loaded = 0;
   for (const std::string& name : header.textures) {

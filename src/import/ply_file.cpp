@@ -96,7 +96,7 @@ PlyHeader read_ply_header(const Bytes& bytes) {
   constexpr std::size_t kHeaderBytesMax = 65536;
   std::string text(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(std::min(bytes.size(), kHeaderBytesMax)));
   if (text.compare(0, 3, "ply") != 0) fail_import("not a PLY file; export it again");
-  // All lines end as the first does: the byte after the header may itself be a line feed.
+  // All lines end like the first: the byte after the header may itself be a line feed.
   std::string line_end = text.compare(3, 2, "\r\n") == 0 ? "\r\n" : text.compare(3, 1, "\r") == 0 ? "\r" : "\n";
   PlyHeader header;
   for (std::size_t at = 0;;) {

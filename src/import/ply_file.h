@@ -36,7 +36,7 @@ struct PlyHeader {
 // Throws an ImportError if the header is damaged or states more elements than the file can hold.
 PlyHeader read_ply_header(const Bytes& bytes);
 
-// Reads the numbers of the body in order. Throws an ImportError where the file ends or a word is not a number.
+// Reads the numbers of the body in order. Throws an ImportError if the file ends or a word is not a number.
 class PlyNumbers {
  public:
   PlyNumbers(const Bytes& bytes, const PlyHeader& header)
@@ -44,7 +44,7 @@ class PlyNumbers {
 
   double next(const PlyType& type);
   void skip(const PlyType& type, std::uint64_t count);
-  // Number of entries of the list that follows, at most the bytes left. `list` counts the element's lists, for errors.
+  // Returns the length of the next list, at most the bytes left. `list` counts the element's lists, for errors.
   std::uint64_t next_count(const PlyType& type, std::uint64_t list);
 
  private:

@@ -19,7 +19,7 @@ Vec3d area_vector(const std::vector<Vec3>& p) {
   return sum;
 }
 
-// The normal of three corners far apart; zero if all lie on a line.
+// Normal of three corners far apart; zero if all lie on a line.
 Vec3d spanned_normal(const std::vector<Vec3>& p) {
   const Vec3d origin = to_double(p[0]);
   Vec3d far = {0, 0, 0}, normal = {0, 0, 0};
@@ -34,15 +34,15 @@ Vec3d spanned_normal(const std::vector<Vec3>& p) {
   return normal;
 }
 
-// A polygon that crosses itself may have next to no area vector.
+// A polygon that crosses itself may have a vanishing area vector.
 Vec3d polygon_normal(const std::vector<Vec3>& p) {
-  constexpr double kAreaShareMin = 1e-3;  // chosen: the vector of a smaller share has no certain direction
+  constexpr double kAreaShareMin = 1e-3;  // chosen: a smaller vector has no reliable direction
   const Vec3d sum = area_vector(p), spanned = spanned_normal(p);
   if (dot(sum, sum) >= kAreaShareMin * kAreaShareMin * dot(spanned, spanned)) return sum;
   return dot(sum, spanned) < 0 ? -spanned : spanned;
 }
 
-// Leaves out the coordinate along which the normal is longest, so that the others stay exact.
+// Drops the coordinate along which the normal is longest, so that the others stay exact.
 std::vector<Vec2> project(const std::vector<Vec3>& positions, const Vec3d& normal) {
   int axis = 0;
   for (int i = 1; i < 3; ++i)
@@ -55,14 +55,14 @@ std::vector<Vec2> project(const std::vector<Vec3>& positions, const Vec3d& norma
   return result;
 }
 
-// Whether the first corner sees all others in order, within half a turn.
+// Returns whether the first corner sees all others in order, within half a turn.
 bool is_fan(const std::vector<Vec2>& p) {
   for (std::size_t i = 1; i + 1 < p.size(); ++i)
     if (orientation(p[0], p[i], p[i + 1]) <= 0 || orientation(p[0], p[1], p[i + 1]) <= 0) return false;
   return true;
 }
 
-// A quadrilateral along its shorter diagonal, if both are inside.
+// Divides a quadrilateral along its shorter diagonal, if both are inside.
 bool append_quadrilateral(const std::vector<Vec3>& p, const std::vector<Vec2>& loop,
                           std::vector<std::uint32_t>* corners) {
   if (p.size() != 4 || !is_fan(loop) || !is_fan({loop[1], loop[2], loop[3], loop[0]})) return false;
@@ -82,8 +82,8 @@ double turn(double from, double to) {
   return angle < 0 ? angle + 2 * kPi : angle;
 }
 
-// Finds the corners of the loop at a point. Where there are several, as at keyholes, each triangle gets the one whose
-// inside it lies in.
+// Finds the corners of the loop at a point. If there are several, as at keyholes, each triangle gets the corner whose
+// inside contains it.
 class CornersAtPoints {
  public:
   CornersAtPoints(const std::vector<Vec2>& loop, const PlanarSweep& sweep)
@@ -103,7 +103,7 @@ class CornersAtPoints {
     }
   }
 
-  // Corner `k` of the triangle of points.
+  // Returns corner `k` of the triangle of points.
   std::uint32_t find(const std::uint32_t* triangle, int k) const {
     const std::uint32_t first = first_[triangle[k]];
     CHECK(first != kNone);
@@ -119,7 +119,7 @@ class CornersAtPoints {
   }
 
  private:
-  // Whether the direction lies between the edges at the corner, on their left.
+  // Returns whether the direction lies between the edges at the corner, on their left.
   bool holds(std::uint32_t corner, double middle) const {
     const Vec2& here = loop_[corner];
     double ends[2];
@@ -136,11 +136,11 @@ class CornersAtPoints {
 
   const std::vector<Vec2>& loop_;
   const PlanarSweep& sweep_;
-  mutable std::size_t steps_left_;           // then the first corner at a point has to do
+  mutable std::size_t steps_left_;           // when used up, the first corner at a point is taken
   std::vector<std::uint32_t> first_, next_;  // by point; by corner
 };
 
-// Where along the edge the point is, from 0 to 1.
+// Position of the point along the edge, from 0 to 1.
 float along_edge(const std::vector<Vec2>& loop, std::uint32_t corner, const Vec2& point) {
   const Vec2 &a = loop[corner], &b = loop[(corner + 1) % loop.size()];
   const double du = static_cast<double>(b.x) - static_cast<double>(a.x),
@@ -162,7 +162,7 @@ Rgba16 mean(const Rgba16& a, const Rgba16& b, float t) {
   return {mean(a.r, b.r, t), mean(a.g, b.g, t), mean(a.b, b.b, t), mean(a.a, b.a, t)};
 }
 
-// The mean of both edges at the crossing.
+// Mean of both edges at the crossing.
 template <class T>
 void append_crossing(const std::vector<std::uint32_t>& vertices, const PolygonCrossing& crossing,
                      std::vector<T>* values) {
@@ -194,7 +194,7 @@ bool triangulate_polygon(const std::vector<Vec3>& positions, PolygonTriangles* r
   const std::vector<std::uint32_t>& triangles = sweep.triangles();
   for (std::size_t t = 0; t < triangles.size(); t += 3)
     for (int k = 0; k < 3; ++k) result->corners.push_back(corners.find(&triangles[t], k));
-  // A corner at the place of the next has a triangle without area, so that a polygon of n corners has n − 2.
+  // A corner that repeats the next has a triangle without area, so that a polygon of n corners has n − 2.
   for (std::uint32_t i = 0; i < count && !triangles.empty(); ++i)
     if (sweep.points_of_corners()[i] == sweep.points_of_corners()[(i + 1) % count])
       result->corners.insert(result->corners.end(), {i, (i + 1) % count, (i + 2) % count});

@@ -1,4 +1,4 @@
-// Triangles of polygons, for all formats that have faces of more than three corners.
+// Triangulation of polygons, for all formats with faces of more than three corners.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -18,14 +18,14 @@ struct PolygonTriangles {
   std::vector<PolygonCrossing> crossings;
 };
 
-// Triangulates a polygon by the even-odd rule, seen along its mean normal: concave ones, with keyholes, with corners on
-// a line or at one place. All corners on the boundary are corners of triangles, so that neighbours leave no gap; one that repeats the last has a triangle
-// without area. A
-// polygon without area has no triangles. False if it crosses itself more often than 64 times its number of corners.
+// Triangulates a polygon by the even-odd rule, seen along its mean normal: also if concave, with keyholes, with corners
+// on a line or coincident. All corners on the boundary are corners of triangles, so that neighbours leave no gap; one
+// that repeats the previous one has a triangle without area. A polygon without area has no triangles. Returns false if
+// it crosses itself more often than 64 times its number of corners.
 bool triangulate_polygon(const std::vector<Vec3>& positions, PolygonTriangles* result);
 
-// Appends the polygon of these vertices of the mesh, and vertices where it crosses itself. One of three corners is
-// appended as it is, one of fewer not at all. Leaves out, with a remark, those that cannot be triangulated.
+// Appends the polygon of these vertices of the mesh, and vertices where it crosses itself. Three corners are appended
+// as they are, fewer not at all. Polygons that cannot be triangulated are left out, with a remark.
 void append_polygon(const std::vector<std::uint32_t>& vertices, MeshData* mesh, SceneBuilder* builder);
 
 }  // namespace pocketray

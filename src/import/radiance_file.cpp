@@ -19,7 +19,7 @@ struct Reader {
   const std::uint8_t* at;
   const std::uint8_t* end;
   std::size_t left() const { return static_cast<std::size_t>(end - at); }
-  // The next line without its end; false at the end of the bytes.
+  // Reads the next line without its end; returns false at the end of the bytes.
   bool line(std::string* text) {
     if (at == end) return false;
     const auto* stop = static_cast<const std::uint8_t*>(std::memchr(at, '\n', left()));
@@ -55,7 +55,7 @@ Status read_header(Reader* in, RadiancePicture* picture, double* exposure) {
   return success();
 }
 
-// The coding of scanlines of 8 … 32767 pixels: each component by itself, in runs and literal parts.
+// Reads scanlines of 8 … 32767 pixels: each component separately, in runs and literal parts.
 bool read_components(Reader* in, std::vector<std::uint8_t>* row, std::uint32_t width) {
   for (std::uint32_t c = 0; c < 4; ++c)
     for (std::uint32_t x = 0; x < width;) {
@@ -71,7 +71,7 @@ bool read_components(Reader* in, std::vector<std::uint8_t>* row, std::uint32_t w
   return true;
 }
 
-// Pixels as they are; 1, 1, 1, n repeats the last one n times, and 256 n times if another repetition precedes.
+// Reads plain pixels; 1, 1, 1, n repeats the last one n times, and 256 n times after another repetition.
 bool read_pixels(Reader* in, std::vector<std::uint8_t>* row, std::uint32_t width) {
   std::uint32_t shift = 0;
   for (std::uint32_t x = 0; x < width;) {
@@ -106,7 +106,7 @@ Status decode_radiance(const std::vector<std::uint8_t>& bytes, RadiancePicture* 
   Reader in = {bytes.data(), bytes.data() + bytes.size()};
   double exposure = 1;
   RETURN_IF_ERROR(read_header(&in, picture, &exposure));
-  // Pixels are kept as they arrive, so that a short file with a large size takes little memory.
+  // Pixels are stored as they arrive, so that a short file that claims a large size takes little memory.
   std::vector<std::uint8_t> row(std::size_t(4) * picture->width);
   picture->pixels.clear();
   try {

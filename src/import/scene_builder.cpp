@@ -42,7 +42,7 @@ void require_invertible(const Transform& t, const std::string& name) {
                 determinant(t));
 }
 
-// Keeps the elements `kept` of each run of `stride` elements.
+// Keeps only the elements `kept` of each run of `stride` elements.
 template <class T>
 static void gather(std::vector<T>* array, const std::vector<std::uint32_t>& kept, std::size_t stride) {
   if (array->empty()) return;
@@ -90,7 +90,7 @@ void tidy_mesh(MeshData* mesh) {
   gather(&mesh->skin_weights, kept, count);
 }
 
-// Extends an array that not every mesh has to `count` elements, unless no mesh had it so far.
+// Extends an array that only some meshes have to `count` elements, unless no mesh has had it so far.
 template <class T>
 static void append_optional(std::vector<T>* all, const std::vector<T>& more, std::size_t begin, std::size_t count,
                             T filler) {
@@ -100,7 +100,7 @@ static void append_optional(std::vector<T>* all, const std::vector<T>& more, std
   all->resize(begin + count, filler);
 }
 
-// Bytes by which append_optional() makes an array longer.
+// Bytes by which append_optional() extends an array.
 template <class T>
 static std::uint64_t optional_bytes(const std::vector<T>& all, const std::vector<T>& more, std::size_t end) {
   return all.empty() && more.empty() ? 0 : (end - all.size()) * sizeof(T);
@@ -233,7 +233,7 @@ std::uint32_t begin_part(SceneBuilder* builder, const std::string& name, std::ui
   return static_cast<std::uint32_t>(builder->parts.size() - 1);
 }
 
-// Parts come after those they are below.
+// Parts come after their ancestors.
 static NamedBoxes named_parts(const SceneBuilder& builder) {
   const std::vector<Vec3>& positions = builder.out->positions;
   std::vector<Box> boxes(builder.parts.size(), empty_box());

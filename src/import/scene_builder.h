@@ -11,8 +11,8 @@
 
 namespace pocketray {
 
-// A tangent that a file gives, perpendicular to the vertex normal; zero: none. The bitangent is normal × direction
-// where handedness is 1, the opposite where it is −1.
+// A tangent from a file, perpendicular to the vertex normal; zero: none. The bitangent is normal × direction if
+// handedness is 1, its opposite if it is −1.
 struct GivenTangent {
   Vec3 direction;
   int handedness;
@@ -25,7 +25,7 @@ struct MeshData {
   std::vector<Vec3> normals;  // unit, one per vertex, or empty: the geometric normal
   std::vector<Vec2> uvs;      // one per vertex, or empty
   std::vector<Vec2> second_uvs;
-  std::vector<GivenTangent> tangents;  // one per vertex, or empty; not read where the mesh moves
+  std::vector<GivenTangent> tangents;  // one per vertex, or empty; not read if the mesh moves
   std::vector<Rgba16> colors;
   std::vector<std::uint32_t> indices;  // three per triangle, counter-clockwise from the front
   std::uint32_t material = 0;
@@ -66,7 +66,7 @@ struct SceneArrays {
   std::vector<SceneOrigin> origin;  // one, or none; see exact.h
 };
 
-// A part of the model; the meshes appended until the next part begins are its own.
+// A part of the model; meshes appended until the next part begins belong to it.
 struct PartSource {
   std::string name;  // may be empty
   std::uint32_t parent;
@@ -80,16 +80,16 @@ struct SceneBuilder {
   std::vector<PartSource> parts;
   std::uint64_t bytes_charged = 0;
   FilesRead files;
-  std::uint64_t broken_face_count = 0;  // left out
+  std::uint64_t broken_face_count = 0;  // faces left out
   std::vector<std::string> unused;      // contents of the file that are not used
   std::vector<std::string> remarks;     // simplifications and repairs
 };
 
 // Counts bytes about to be allocated for `what`; throws beyond options.byte_count_max.
 void charge_bytes(SceneBuilder* builder, std::uint64_t bytes, const char* what);
-// The same check for `count` temporary elements, without counting them.
+// Checks `count` temporary elements likewise, without counting them.
 void require_bytes(const SceneBuilder& builder, std::uint64_t count, std::uint64_t element_bytes, const char* what);
-// Adds to the warning line, once each.
+// Adds a text to the warning line, once each.
 void note_unused(SceneBuilder* builder, const std::string& what);
 void note_remark(SceneBuilder* builder, const std::string& what);
 
@@ -102,9 +102,9 @@ std::uint32_t begin_part(SceneBuilder* builder, const std::string& name, std::ui
 // Checks indices and array lengths; removes unused vertices.
 void tidy_mesh(MeshData* mesh);
 
-// Appends the tidied mesh in world space. A mirroring transform flips the winding. Faces with a
-// vertex that is not finite or beyond kCoordinateMax there are left out, or refused (broken_faces.h). `exactly`: the
-// transform before rounding and before the scene's origin is subtracted, where there is one; null: `to_world` is exact.
+// Appends the tidied mesh in world space. A mirroring transform flips the winding. Faces with a vertex that is not
+// finite or beyond kCoordinateMax in world space are left out, or refused (broken_faces.h). `exactly`: the transform
+// before rounding and before the scene's origin is subtracted, if there is one; null: `to_world` is exact.
 struct ExactTransform;
 void append_mesh(SceneBuilder* builder, const MeshData& mesh, const Transform& to_world,
                  const ExactTransform* exactly = nullptr);

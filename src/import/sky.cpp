@@ -7,11 +7,11 @@
 namespace pocketray {
 namespace {
 
-constexpr double kUnit = 30;    // kcd/m² of radiance 1
+constexpr double kUnit = 30;    // kcd/m² at radiance 1
 constexpr double kSolar = 128;  // klx of the sun above the atmosphere
 constexpr double kGroundAlbedo = 0.2;
 constexpr double kHaze = 0.03;       // sine of the angle below the horizon where the ground fades into it
-constexpr double kCosineMin = 0.01;  // where the model is taken for the horizon: it is singular there
+constexpr double kCosineMin = 0.01;  // the model is singular at the horizon, which is read here
 
 struct Perez {
   double a, b, c, d, e;
@@ -57,7 +57,7 @@ Vec3d to_rgb(double x, double y, double luminance) {
           std::fmax(0.0557 * X - 0.2040 * Y + 1.0570 * Z, 0)};
 }
 
-// To the sun: to the upper left of the default camera, as the default sun is.
+// Direction to the sun: to the upper left of the default camera, like the default sun.
 Vec3d to_sun(const Sky& sky) {
   const double elevation = radians(sky.elevation), ground = det_cos(elevation), side = std::sqrt(0.5 * 0.5 + 0.6 * 0.6);
   return {-0.5 / side * ground, det_sin(elevation), 0.6 / side * ground};
@@ -77,8 +77,8 @@ Vec3d above_horizon(const Sky& sky, Vec3d direction) {
          (1 / kUnit);
 }
 
-// The sun's irradiance by app. A.1: Rayleigh scattering, aerosols and ozone along the way through the air, at 615, 535
-// and 445 nm, which stand for red, green and blue.
+// The sun's irradiance by app. A.1: Rayleigh scattering, aerosols and ozone along the path through the air, at 615, 535
+// and 445 nm, which represent red, green and blue.
 Vec3d sunlight(const Sky& sky) {
   const double wavelength[3] = {0.615, 0.535, 0.445}, ozone[3] = {11.5, 7.2, 0.3};  // µm, 1/m
   const double mass = 1 / (det_sin(radians(sky.elevation)) + 0.15 / det_exp(1.253 * det_log(sky.elevation + 3.885)));
@@ -97,7 +97,7 @@ Vec3d sunlight(const Sky& sky) {
 
 Vec3d sky_radiance(const Sky& sky, const Vec3d& direction) {
   if (direction.y >= 0) return above_horizon(sky, direction);
-  // The ground under this sun and a sky as bright as at 45° to the sun's side.
+  // The ground is lit by this sun and by a sky as bright as at 45° to the sun's side.
   const Vec3d sun = to_sun(sky), aside = {-sun.z, 0, sun.x};
   const double length_aside = std::sqrt(dot(aside, aside));
   const Vec3d high = length_aside > 0 ? aside * (std::sqrt(0.5) / length_aside) : Vec3d{std::sqrt(0.5), 0, 0};

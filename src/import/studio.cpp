@@ -1,4 +1,4 @@
-// A photographer's studio: soft boxes before a backdrop that runs from a dark floor up to a bright ceiling.
+// A photographer's studio: soft boxes in front of a backdrop that runs from a dark floor to a bright ceiling.
 #include <algorithm>
 #include <vector>
 
@@ -10,28 +10,28 @@
 namespace pocketray {
 namespace {
 
-// From 0 below `from` to 1 above `to`.
+// Rises from 0 below `from` to 1 above `to`.
 double smooth_step(double from, double to, double x) {
   const double t = std::clamp((x - from) / (to - from), 0.0, 1.0);
   return t * t * (3 - 2 * t);
 }
 
-// A soft box: a rectangle that faces the scene from a direction, seen from the distance 1.
+// A soft box: a rectangle that faces the scene from a direction, seen at distance 1.
 struct SoftBox {
   Vec3d towards;
   double half_width, half_height;  // up to half of its radiance
   Vec3d radiance;
 };
 
-// Chosen: all of them above what a camera sees that looks straight ahead. The brightest is where the key light comes
-// from, as the default camera sees it from the front right.
+// Chosen: all above the view of a camera that looks straight ahead. The brightest is in the direction of the key light,
+// as the default camera sees it from the front right.
 const SoftBox kBoxes[] = {
     {{-0.45, 0.95, 0.95}, 0.3, 0.27, {2.05, 2, 1.9}},                                          // key
     {{1.1, 0.9, 0.35}, 0.18, 0.38, {0.95, 1, 1.1}},                                            // fill
     {{-1.0, 0.8, -0.75}, 0.32, 0.2, {0.97, 1, 1.05}},                                          // behind, on both sides
     {{0.55, 0.85, -1.1}, 0.32, 0.2, {0.97, 1, 1.05}}, {{0, 1, 0}, 0.3, 0.3, {0.8, 0.8, 0.8}},  // overhead
 };
-constexpr double kEdge = 0.1;  // over which a box fades
+constexpr double kEdge = 0.1;  // width over which a box fades
 
 double share_of(const SoftBox& box, const Vec3d& direction) {
   const Vec3d axis = normalize(box.towards);
@@ -46,7 +46,7 @@ double share_of(const SoftBox& box, const Vec3d& direction) {
   return within(right, box.half_width) * within(cross(axis, right), box.half_height);
 }
 
-// Chosen: dielectrics have a reflectance of .04 to .08, and a lobe of √α = 0.5 evens out what it reflects.
+// Chosen: dielectrics have a reflectance of .04 to .08, and a lobe of √α = 0.5 smooths its reflections.
 constexpr float kReflectance = 0.08f, kRoughness = 0.25f;
 
 bool mirrors(const Scene& scene, std::uint32_t material) {

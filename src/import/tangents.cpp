@@ -20,7 +20,7 @@ struct Sum {
 };
 
 using Sums = std::map<VertexKey, Sum>;
-// An entry, three links and a colour beside it, and the heap's own word.
+// Map entry with three links and a colour, plus the heap's own word.
 constexpr std::uint64_t kSumBytes = sizeof(Sums::value_type) + 5 * sizeof(void*);
 
 VertexKey key_of(const SceneArrays& out, std::uint32_t vertex) {
@@ -38,7 +38,7 @@ double angle_between(const Vec3d& a, const Vec3d& b) {
   return is_zero(p) || is_zero(q) ? 0 : det_acos(dot(p, q));
 }
 
-// The sum at a vertex, made if there is none.
+// Returns the sum at a vertex, creating it if necessary.
 Sum* sum_at(const SceneBuilder& builder, std::uint32_t vertex, Sums* sums) {
   const VertexKey key = key_of(*builder.out, vertex);
   const auto found = sums->find(key);

@@ -4,7 +4,7 @@
 
 namespace pocketray {
 
-// The transform that makes options.up, or else `format_up`, the Y axis; a remark names the turn that is not asked for.
+// Returns the transform that makes options.up, or else `format_up`, the Y axis; a remark names an unrequested turn.
 Transform upright(SceneBuilder* builder, UpAxis format_up, const char* format);
 
 }  // namespace pocketray

@@ -29,7 +29,7 @@ Image decode_webp(const Bytes& bytes, const std::string& name, std::uint64_t tex
   const std::uint64_t count = std::uint64_t(image.width) * image.height;
   if (image.width > kTextureSideMax || image.height > kTextureSideMax || count > texel_count_max)
     fail_import("%s is too large; scale it down", name.c_str());
-  // A picture of one colour takes a few bytes, whatever its size: small ones are worth it.
+  // A picture of a single colour takes a few bytes at any size: small ones are accepted.
   constexpr std::uint64_t kAnyFileMax = 1u << 20, kBytePixelsMax = 1u << 13;
   if (count > std::max(kAnyFileMax, kBytePixelsMax * bytes.size()))
     fail_import("%s has %d × %d pixels, more than its %zu bytes are worth; export it as PNG", name.c_str(),

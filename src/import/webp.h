@@ -5,7 +5,7 @@
 namespace pocketray {
 
 bool is_webp(const Bytes& bytes);
-// Throws ImportError where the image is damaged, has more than `texel_count_max` texels, or cannot be read by this
+// Throws ImportError if the image is damaged, has more than `texel_count_max` texels, or cannot be read by this
 // build.
 Image decode_webp(const Bytes& bytes, const std::string& name, std::uint64_t texel_count_max);
 

@@ -1,4 +1,4 @@
-// The ambient term: the same radiance from everywhere, reflected by a diffuse surface according to its albedo.
+// The ambient term: uniform radiance from everywhere, reflected by a diffuse surface according to its albedo.
 #pragma once
 #include "effect/effect_probe.h"
 #include "indirect/indirect.h"

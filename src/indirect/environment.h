@@ -1,6 +1,6 @@
-// Light from a stored environment: what a ray sees that hits nothing, and what diffuse and glossy surfaces reflect of
-// it. Here surfaces do not shade each other from it: at first hits, shade/environment_shadow.cpp adds its diffuse part
-// with shadows. Mirrors and glass see it behind what they hit.
+// Light from a stored environment: radiance for rays that hit nothing, and its reflection by diffuse and glossy
+// surfaces. It is unshadowed here: at first hits, shade/environment_shadow.cpp adds the diffuse part with shadows.
+// Mirrors and glass see the environment behind what they hit.
 #pragma once
 #include <cmath>
 
@@ -10,17 +10,17 @@
 
 namespace pocketray {
 
-// The scene's environment, or null.
+// Returns the scene's environment, or null.
 inline const EnvironmentInfo* environment_of(const Scene& scene) {
   return scene.environment_info.count ? scene.environment_info.data : nullptr;
 }
 
-// Bilinear between the four nearest texels of a map.
+// Bilinear interpolation between the four nearest texels of a map.
 inline Vec3 environment_map_at(const std::uint32_t* texels, std::uint32_t side_count, const Vec3& direction) {
   const int side = static_cast<int>(side_count);
   float u, v;
   to_octahedral(direction, &u, &v);
-  auto place = [side](float at, int* index) {  // of the texel before it, in [−1, side − 1], and the rest to it
+  auto place = [side](float at, int* index) {  // index of the texel before it, in [−1, side − 1], and the fraction
     at = (at + 1) * (0.5f * static_cast<float>(side)) + 0.5f;
     const float end = static_cast<float>(side) + 0.5f;
     at = at > 0 ? at < end ? at : end : 0;
@@ -34,13 +34,13 @@ inline Vec3 environment_map_at(const std::uint32_t* texels, std::uint32_t side_c
   return mix(mix(texel(0, 0), texel(1, 0), s), mix(texel(0, 1), texel(1, 1), s), t);
 }
 
-// Radiance from a direction, which need not be unit.
+// Radiance from a direction, which need not be a unit vector.
 inline Vec3 environment_radiance(const Scene& scene, const Vec3& direction) {
   const EnvironmentInfo& info = scene.environment_info[0];
   return environment_map_at(scene.environment_texels.data, info.side, direction) * info.scale;
 }
 
-// Its mean over the GGX lobe of roughness α around a direction, for a viewer along the normal.
+// Mean radiance over the GGX lobe of roughness α around a direction, for a viewer along the normal.
 inline Vec3 environment_gloss(const Scene& scene, const Vec3& direction, float alpha) {
   const EnvironmentInfo& info = scene.environment_info[0];
   const float roughness = std::sqrt(alpha);
@@ -63,7 +63,7 @@ inline Vec3T<T> environment_irradiance(const EnvironmentInfo& info, const Vec3T<
   Vec3T<T> sum = {0, 0, 0};
   for (int i = 0; i < 9; ++i)
     for (int c = 0; c < 3; ++c) sum[c] += static_cast<T>(info.irradiance[i][c]) * basis[i];
-  // Nine coefficients ring: behind a bright light they fall below zero.
+  // Nine coefficients ring: opposite a bright light they fall below zero.
   for (int c = 0; c < 3; ++c) {
     const T most = static_cast<T>(info.radiance_max[c]);
     sum[c] = sum[c] > 0 ? sum[c] < most ? sum[c] : most : 0;
@@ -71,19 +71,19 @@ inline Vec3T<T> environment_irradiance(const EnvironmentInfo& info, const Vec3T<
   return sum;
 }
 
-// Its mean over a GGX lobe around the direction that the normal mirrors. `way` goes from the viewer to the surface.
+// Mean radiance over a GGX lobe around the mirrored direction. `way` goes from the viewer to the surface.
 inline Vec3 environment_in_lobe(const Scene& scene, const Vec3& normal, const Vec3& way, float alpha) {
   const float smoothness = 1 - alpha;
-  // Off the normal, the middle of a rough lobe is nearer to it than the mirrored direction [Lagarde & de Rousiers 2014,
-  // "Moving Frostbite to PBR", listing 22].
+  // Off the normal, the middle of a rough lobe is nearer to the normal than the mirrored direction [Lagarde & de
+  // Rousiers 2014, "Moving Frostbite to PBR", listing 22].
   const float share = smoothness * (std::sqrt(smoothness) + alpha);
   const Vec3 mirrored = way - normal * (2 * dot(normal, way));
   return environment_gloss(scene, normal * (1 - share) + mirrored * share, alpha);
 }
 
-// The same for a lobe with a grain: the mean around microfacets that lean along the grain, at the middles of four equal
-// shares of their slopes, which are distributed as 1/(1 + (x/αx)²)^(3/2); weighted by the cosine of what they mirror,
-// as the levels of the map are. Glossy lobes without a grain do not call it.
+// environment_in_lobe() for a lobe with a grain: the mean around microfacets that lean along the grain, at the middles
+// of four equal shares of their slopes, which are distributed as 1/(1 + (x/αx)²)^(3/2); weighted by the cosine of the
+// mirrored direction, like the map's levels. Glossy lobes without a grain do not call it.
 inline Vec3 environment_along_grain(const Scene& scene, const LobeFrame& frame, const Vec3& way, float alpha) {
   const GrainAxes<float> axes = grain_axes(frame, alpha);
   Vec3 sum = {0, 0, 0};
@@ -99,27 +99,27 @@ inline Vec3 environment_along_grain(const Scene& scene, const LobeFrame& frame, 
 }
 
 // Radiance to a viewer from a glossy lobe under the environment: the split sum [Karis 2013]. `specular` as in brdf.h;
-// the material reflects its surroundings. `way` goes from the viewer to the surface, `irradiance` is
+// the material must reflect its surroundings. `way` goes from the viewer to the surface, `irradiance` is
 // environment_irradiance() there.
 inline Vec3 reflected_environment(const Scene& scene, const Material& m, const Vec3& specular, const Vec3& normal,
                                   const Vec3& way, const Vec3& irradiance) {
   const BrdfAlbedo albedo = kBrdfList[m.brdf]->albedo(m, specular, dot(normal, way));
   return albedo.once * environment_in_lobe(scene, normal, way, m.roughness) + albedo.scattered * irradiance;
 }
-// The same for a lobe with a grain, whose albedo is that of the even lobe of the same area.
+// reflected_environment() for a lobe with a grain; its albedo is that of the isotropic lobe of equal area.
 inline Vec3 reflected_along_grain(const Scene& scene, const Material& m, const Vec3& specular, const LobeFrame& frame,
                                   const Vec3& way, const Vec3& irradiance) {
   const BrdfAlbedo albedo = kBrdfList[m.brdf]->albedo(evened(m, frame), specular, dot(frame.normal, way));
   return albedo.once * environment_along_grain(scene, frame, way, m.roughness) + albedo.scattered * irradiance;
 }
 
-// Whether the environment lights surfaces, besides being seen by rays. Stored radiosity holds its diffuse part.
+// Returns whether the environment lights surfaces, besides being visible. Stored radiosity contains its diffuse part.
 inline bool environment_lights(const Scene& scene, EffectMask mask, IndirectChoice indirect) {
   return has(mask, Effect::environment) && environment_of(scene) && indirect != IndirectChoice::none;
 }
 inline bool environment_lights_diffuse(EffectMask mask) { return !has(mask, Effect::radiosity); }
 
-// Upper bound of the radiance that a material reflects of it, per component.
+// Upper bound of the environment's radiance reflected by a material, per component.
 inline float environment_bound(const Scene& scene, const Material& m, EffectMask mask) {
   const Vec3& most = scene.environment_info[0].radiance_max;
   float bound = environment_lights_diffuse(mask) ? max_component(m.diffuse * most) : 0;

@@ -9,7 +9,7 @@
 namespace pocketray {
 namespace {
 
-// The column and row of the n-th square of a Hilbert curve through side × side of them, side a power of two.
+// Column and row of the n-th square of a Hilbert curve through side × side squares, side a power of two.
 void hilbert_place(std::uint32_t side, std::uint32_t n, std::uint32_t* column, std::uint32_t* row) {
   std::uint32_t x = 0, y = 0;
   for (std::uint32_t s = 1; s < side; s *= 2, n /= 4) {
@@ -24,18 +24,18 @@ void hilbert_place(std::uint32_t side, std::uint32_t n, std::uint32_t* column, s
   *column = x, *row = y;
 }
 
-// The lights are made of cells, which hold several texels, or of large texels a part: few enough for CPUs without an
-// FPU, and small enough that not several lights lie in the middle of one.
+// Lights are made of cells, which hold several texels or a part of a large texel: few enough for CPUs without an FPU,
+// and small enough that no cell has several lights in its middle.
 constexpr std::uint32_t kCellsAlong = 64;
 
-// What a cell sends, up to a factor that all share.
+// Light of a cell, up to a common factor.
 struct CellLight {
   Vec3d direction, irradiance;
   double luminance;
 };
 
-// Sums over texels are integers: mantissa × 2^exponent, at most 40 bits, of at most 2^8 texels; in luminance, by weights
-// of 10 bits and places of 5.
+// Sums over texels are integers: mantissa × 2^exponent, at most 40 bits, of at most 2^8 texels; in luminance, by
+// weights of 10 bits and places of 5.
 static_assert(kEnvironmentSideMax / kCellsAlong <= 16, "64 bits hold the sums");
 CellLight cell_light(const Scene& scene, std::uint32_t n) {
   const std::uint32_t side = scene.environment_info[0].side;
@@ -55,7 +55,7 @@ CellLight cell_light(const Scene& scene, std::uint32_t n) {
     }
   CellLight cell = {{0, 0, 0}, {0, 0, 0}, 0};
   if (sum == 0) return cell;
-  // The middle of its light.
+  // Centre of the cell's light.
   const double size = 2.0 / kCellsAlong, luminance = static_cast<double>(sum);
   const double u = static_cast<double>(across) / luminance / (2 * along);
   const double v = static_cast<double>(down) / luminance / (2 * along);
@@ -81,7 +81,7 @@ void place_environment_lights(const Scene& scene, std::uint32_t count, Environme
   if (!(total > 0) || count == 0) return;
   const double share = total / count;
   Vec3d axis = {0, 0, 0}, sum = {0, 0, 0};
-  double room = share;  // of the light that is being filled
+  double room = share;  // room left in the light being filled
   auto add = [&](const CellLight& cell, double part) {
     axis += cell.direction * (part * cell.luminance), sum += cell.irradiance * part;
   };

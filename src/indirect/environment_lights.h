@@ -1,4 +1,4 @@
-// Distant lights that stand for the environment where surfaces shade each other from it: each has an equal share of the
+// Distant lights that represent the environment where surfaces shade each other from it: each has an equal share of the
 // luminance of all directions, as in [Agarwal et al. 2003, "Structured importance sampling of environment maps"] and
 // [Debevec 2005, "A median cut algorithm for light probe sampling"], here by cutting the map along a Hilbert curve.
 #pragma once
@@ -9,21 +9,21 @@
 namespace pocketray {
 
 struct EnvironmentLight {
-  Vec3 direction;   // towards it, unit
-  Vec3 irradiance;  // on a surface that faces it, in units of its own: one light's relative to another's
+  Vec3 direction;   // towards the light, unit
+  Vec3 irradiance;  // on a surface facing it, relative to the other lights'
 };
 struct EnvironmentLights {
-  EnvironmentLight light[kEnvironmentLightMax];  // close ones next to each other
+  EnvironmentLight light[kEnvironmentLightMax];  // lights close in direction are close in order
   std::uint32_t count = 0;                       // 0: the environment is black
-  std::uint32_t wanted = 0;                      // the count that they were placed for
+  std::uint32_t wanted = 0;                      // count that was requested
 };
 
-// Whether default lights stand before a studio. They cast shadows; its own would be faint and take as many rays again.
+// True if default lights go with a studio. They cast shadows; the studio's would be faint and double the rays.
 inline bool default_lights_cast_shadows(const Scene& scene) {
   return scene.info.default_lights != 0 && scene.lights.count > 0;
 }
 
-// Whether memory is planned for them, even if other settings leave them out at first.
+// True if memory is planned for these lights, even if other settings disable them at first.
 inline bool plans_environment_lights(const Scene& scene, const Settings& settings) {
   const EffectMask effects = bit(Effect::environment) | bit(Effect::environment_shadow);
   return scene.environment_info.count > 0 && !default_lights_cast_shadows(scene) && settings.environment_shadows > 0 &&

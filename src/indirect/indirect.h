@@ -2,16 +2,15 @@
 // file of its own and a line of indirect_list.h:
 //
 //   kName           on the command line and in plans: its effect's name, or "none"
-//   kEffects        its effect, one bit of kIndirectEffects; compiled into the kernels of plans that have it. 0: it
-//   adds
-//                   nothing
+//   kEffects        its effect, one bit of kIndirectEffects, or 0 if it adds nothing; compiled into the kernels of
+//                   plans that have it
 //   kReference      how the reference treats it
 //   kPresent, kAbsent       reasons in plans: what the scene has for it, or lacks
-//   use(scene)      whether the scene has what it takes
-//   need(scene, how)        upper bound of the bytes that prepare() takes
+//   use(scene)      whether the scene supports the method
+//   need(scene, how)        upper bound of the bytes that prepare() allocates
 //   prepare(scene, how, keep, scratch)      once, before the first frame; returns the data that radiance() reads, or
 //   null; leaves `scratch` as it was
-//   radiance(point)         leaving a diffuse surface, the same in all directions; inlined into surface evaluation
+//   radiance(point)         leaving a diffuse surface, equal in all directions; inlined into surface evaluation
 //   exact(scene, diffuse)   radiance() in double precision, for the reference
 //   bound(scene, material)  upper bound of radiance() on the material, per component
 #pragma once
@@ -29,7 +28,7 @@ struct IndirectPoint {
   const void* prepared;
   const Vec3& point;
   const Vec3& normal;   // unit, on the viewer's side
-  const Vec3& diffuse;  // albedo there
+  const Vec3& diffuse;  // albedo at the point
   std::uint32_t triangle = 0;
   float u = 0, v = 0;  // in the triangle
   bool front = true;   // the viewer's side is the triangle's front
@@ -37,14 +36,14 @@ struct IndirectPoint {
   Vec3 glossy = {0, 0, 0};  // reflectance of a lobe that the surroundings do not light otherwise
 };
 
-// When the reference includes a method's light: never; in its lighting model only, where the method stands in for light
+// When the reference includes a method's light: never; only in its lighting model, where the method replaces light
 // transport; always, because the light comes from outside the scene.
 enum class IndirectReference { nothing, model, always };
 
-// Whether a method has anything to show in a scene: nothing; on request; also by default.
+// When a method has something to show in a scene: never; on request; also by default.
 enum class IndirectUse { nothing, requested, automatic };
 
-// Bytes, of the persistent arena and while a method is prepared.
+// Bytes of the persistent arena, and bytes while a method is prepared.
 struct IndirectNeed {
   std::size_t keep = 0, scratch = 0;
 };

@@ -1,4 +1,4 @@
-// One line per method of indirect light. --indirect auto takes the last one that the scene has by default.
+// One line per method of indirect light. --indirect auto selects the last one that the scene has by default.
 #pragma once
 #include "indirect/ambient.h"
 #include "indirect/instant_radiosity.h"
@@ -21,8 +21,8 @@ struct IndirectData {
   const void* prepared[IndirectList::kCount] = {};
 };
 
-// The methods that are prepared: those of the plan, and radiosity if settings of a later frame may turn to it and read
-// gradients then.
+// Methods to prepare: the plan's, and radiosity if later frames' settings may switch to it and then read
+// gradients.
 inline EffectMask prepared_methods(const Scene& scene, const Settings& settings, EffectMask mask) {
   const EffectMask radiosity = RadiosityIndirect::kEffects & ~settings.forced_off;
   const bool may_read_gradients =
@@ -30,7 +30,7 @@ inline EffectMask prepared_methods(const Scene& scene, const Settings& settings,
   return may_read_gradients ? mask | radiosity : mask;
 }
 
-// Of all these methods.
+// Total need of all these methods.
 inline IndirectNeed indirect_need(const Scene& scene, const Quality& how, EffectMask mask) {
   IndirectNeed sum;
   for (const IndirectInfo& info : IndirectList::kInfos)
@@ -51,7 +51,7 @@ inline IndirectData prepare_indirect(const Scene& scene, const Quality& how, Eff
   return data;
 }
 
-// Whether a plan has what quadratic and cubic reconstruction reads; linear light on triangles takes nothing.
+// Returns whether a plan has the data for quadratic and cubic reconstruction; linear light on triangles needs none.
 inline bool has_gradients(const Scene& scene, const IndirectData& data) {
   if (scene.radiosity_values.empty()) return true;
   for (int i = 0; i < IndirectList::kCount; ++i)
@@ -59,7 +59,7 @@ inline bool has_gradients(const Scene& scene, const IndirectData& data) {
   return false;
 }
 
-// The lights of InstantRadiosity, which each frame places anew; null if it is not prepared.
+// Lights of InstantRadiosity, placed anew for each frame; null if it is not prepared.
 inline VirtualLights* virtual_lights_of(const IndirectData& data) {
   for (int i = 0; i < IndirectList::kCount; ++i)
     if (IndirectList::kInfos[i].effects == InstantRadiosity::kEffects)
@@ -74,7 +74,7 @@ inline float indirect_bound(const Scene& scene, const Material& material, Effect
   return bound;
 }
 
-// For the renderer's own lighting in double precision.
+// For the renderer's own lighting, in double precision.
 inline Vec3d exact_indirect_of(const Scene& scene, const Vec3d& diffuse, EffectMask mask) {
   Vec3d sum = {0, 0, 0};
   for (const IndirectInfo& info : IndirectList::kInfos)

@@ -1,4 +1,4 @@
-// No indirect light: surfaces that no light reaches are black.
+// No indirect light: surfaces not reached by any light are black.
 #pragma once
 #include "indirect/indirect.h"
 

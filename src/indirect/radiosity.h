@@ -1,6 +1,6 @@
-// Radiosity: light between diffuse surfaces, solved when the scene was baked and stored with it [Shirley 1990]. Direct
-// light is not in it; that is traced for each pixel [Jansen92]. Phong's lobe, which mirrors no surroundings, reflects
-// it as a diffuse surface of the same mean albedo would.
+// Radiosity: light between diffuse surfaces, solved when the scene is baked and stored with it [Shirley 1990]. It
+// excludes direct light, which is traced for each pixel [Jansen92]. Phong's lobe, which mirrors no surroundings,
+// reflects it like a diffuse surface of equal mean albedo.
 #pragma once
 #include "effect/effect_probe.h"
 #include "indirect/indirect.h"
@@ -9,7 +9,7 @@
 
 namespace pocketray {
 
-// Stored value on a grid, at a point in the pose at time 0.
+// Value stored on a grid, at a point in the pose at time 0.
 inline Vec3 radiosity_of_grid(const Scene& scene, const RadiosityGrid& grid, const Vec3& point, Reconstruction how) {
   auto place = [](float at, std::uint32_t count, std::uint32_t* cell) {  // in [0, 1] of the cell
     const float last = static_cast<float>(count - 1);
@@ -29,7 +29,7 @@ inline Vec3 radiosity_of_grid(const Scene& scene, const RadiosityGrid& grid, con
   return how == Reconstruction::constant ? constant_patch(corners) : smooth_cell(corners, s, t, how);
 }
 
-// The grid around a point of a flat part, whose side of a triangle refers to `place`.
+// Returns the grid around a point of a flat part whose triangle side refers to `place`.
 inline const RadiosityGrid& grid_around(const Scene& scene, std::uint32_t place, const Vec3& point) {
   while (is_cut(place)) {
     const RadiosityCut& cut = scene.radiosity_cuts[place & ~kRadiosityCutBits];
@@ -38,7 +38,7 @@ inline const RadiosityGrid& grid_around(const Scene& scene, std::uint32_t place,
   return scene.radiosity_grids[place & ~kRadiosityGridBit];
 }
 
-// The corners of the part of a triangle around a point, whose barycentric weights become those in the part.
+// Returns the corners of the part of a triangle around a point; the weights become barycentric within the part.
 inline const RadiosityCorners& corners_around(const Scene& scene, std::uint32_t place, float* weight) {
   if (!is_split(place)) return scene.radiosity_corners[place];
   while (place & kRadiositySplitBit) {
@@ -84,7 +84,7 @@ struct RadiosityIndirect {
           scene.positions[t.vertex(0)] * w + scene.positions[t.vertex(1)] * at.u + scene.positions[t.vertex(2)] * at.v;
       const RadiosityGrid& grid = grid_around(scene, place, point);
       const Vec3 value = radiosity_of_grid(scene, grid, point, at.reconstruction);
-      // Rounding may leave the range of the limited patches.
+      // Rounding may exceed the range of the limited patches.
       return albedo * min(max(value, Vec3{0, 0, 0}), scene.radiosity_info[0].value_max);
     }
     const Vec3& most = scene.radiosity_info[0].value_max;

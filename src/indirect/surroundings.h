@@ -1,5 +1,5 @@
-// Light from the surroundings on glossy lobes: ambient light, or the background where that is brighter, from
-// everywhere, times the lobe's albedo. Without it, metals would be black wherever no light shines into their highlight.
+// Light of the surroundings on glossy lobes: ambient light or, where brighter, the background from everywhere, times
+// the lobe's albedo. Without it, metals would be black wherever no light shines into their highlight.
 #pragma once
 #include "brdf/brdf_list.h"
 #include "effect/effect.h"
@@ -9,7 +9,7 @@ namespace pocketray {
 
 inline Vec3 radiance_of_surroundings(const SceneInfo& info) { return max(info.ambient, info.background); }
 
-// Stands in for what a path would see beyond its maximum depth.
+// Radiance assumed for paths beyond their maximum depth.
 inline Vec3 radiance_beyond_depth(const SceneInfo& info, EffectMask mask) {
   return has(mask, Effect::ambient) ? radiance_of_surroundings(info) : info.background;
 }
@@ -19,13 +19,13 @@ inline bool reflects_surroundings(const Material& m) {
   return !is_zero(m.specular) && m.brdf < kBrdfCount && kBrdfList[m.brdf]->albedo;
 }
 
-// Radiance to a viewer at a cosine from the normal; `specular` as in brdf.h. The material reflects the surroundings.
+// Radiance to a viewer at a cosine from the normal; `specular` as in brdf.h. The material must reflect surroundings.
 inline Vec3 reflected_surroundings(const SceneInfo& info, const Material& m, const Vec3& specular, float cos_viewer) {
   const BrdfAlbedo albedo = kBrdfList[m.brdf]->albedo(m, specular, cos_viewer);
   return (albedo.once + albedo.scattered) * radiance_of_surroundings(info);
 }
 
-// Upper bound of it, per component.
+// Upper bound of reflected_surroundings(), per component.
 inline float reflected_surroundings_bound(const SceneInfo& info, const Material& m) {
   if (!reflects_surroundings(m)) return 0;
   float reflectance = max_component(m.specular);

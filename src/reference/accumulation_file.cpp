@@ -33,7 +33,7 @@ void put_text(const char* text, std::size_t byte_count, std::vector<std::uint8_t
   bytes->insert(bytes->end(), text, text + byte_count);
 }
 
-// Reads from bytes that may end anywhere: past the end it reads zeros and remembers.
+// Reads from bytes that may be truncated: past the end, it reads zeros and records that.
 struct Reader {
   const std::uint8_t* at;
   std::size_t left;
@@ -58,7 +58,7 @@ struct Reader {
   }
 };
 
-// "PF\nWIDTH HEIGHT\n-1.0\n", as we write it.
+// Header "PF\nWIDTH HEIGHT\n-1.0\n", as we write it.
 bool read_header(Reader* reader, std::uint32_t* width, std::uint32_t* height) {
   char text[40] = {}, again[40];
   std::memcpy(text, reader->at, std::min(reader->left, sizeof text - 1));

@@ -25,7 +25,7 @@ Vec3d texel_at(const Scene& scene, int column, int row) {
   return to_double(environment_texel(scene.environment_texels[index])) * static_cast<double>(info.scale);
 }
 
-// Where a direction falls among side × side texels; their centres lie at halves.
+// Maps a direction to side × side texels; their centres lie at halves.
 void place_of(const Vec3d& direction, double side, double* x, double* y) {
   double u, v;
   to_octahedral(direction, &u, &v);
@@ -41,7 +41,7 @@ Vec3d map_at(const Scene& scene, const Vec3d& direction) {
          (texel_at(scene, column, row + 1) * (1 - s) + texel_at(scene, column + 1, row + 1) * s) * t;
 }
 
-// A piece of the square spans its area / |point|³.
+// A piece of the square subtends its area / |point|³.
 double cubed_distance(const Vec3d& point) {
   const double square = dot(point, point);
   return square * std::sqrt(square);
@@ -49,8 +49,8 @@ double cubed_distance(const Vec3d& point) {
 
 double luminance_of(const Vec3d& c) { return 0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z; }
 
-// Diffuse and glossy lobe as light from all around meets them in the renderer: the glossy lobe takes nothing of the
-// diffuse light, and only diffuse light meets shadows, where these are simulated.
+// Value of the diffuse and glossy lobes for light from all around in the renderer's model: the glossy lobe takes
+// nothing from the diffuse light, and only diffuse light is shadowed, if shadows are simulated.
 Vec3d value_in_model(const Reference& reference, const ReferenceSurface& s, const Vec3d& to_viewer,
                      const Vec3d& to_light) {
   const FrameData& frame = *reference.world.frame;
@@ -83,7 +83,7 @@ Vec3d light_in_model(const Reference& reference, const ReferenceSurface& s, cons
   return sum;
 }
 
-// Of the distant lights that reach the surface, the share that nothing hides.
+// Visible fraction of the distant lights that reach the surface.
 Vec3d openness_as_rendered(const Reference& reference, const ReferenceSurface& s) {
   const FrameData& frame = *reference.world.frame;
   Vec3d lit = {0, 0, 0}, open = {0, 0, 0};

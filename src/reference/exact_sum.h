@@ -1,4 +1,4 @@
-// A sum of doubles that does not depend on their order: an integer of 128 bits, in units of 2⁻⁶⁴.
+// A sum of doubles that is independent of their order: an integer of 128 bits, in units of 2⁻⁶⁴.
 #pragma once
 #include <cmath>
 #include <cstdint>
@@ -15,7 +15,7 @@ inline void add(const ExactSum& term, ExactSum* sum) {
   sum->low = low;
 }
 
-// Rounded towards zero to the unit; of at most 2³⁸, which leaves room for 2²⁴ terms. NaN counts as zero.
+// Rounds towards zero to the unit; at most 2³⁸, which leaves room for 2²⁴ terms. NaN counts as zero.
 inline ExactSum exact_term(double value) {
   constexpr double kLargest = 0x1p38;
   double size = std::fabs(value);

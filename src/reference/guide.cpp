@@ -15,7 +15,7 @@ constexpr double kGuidedShare = 0.15;  // of the directions, if there are spots
 constexpr double kSpotSizeMax = 3;     // cells; points farther apart belong to different spots
 constexpr std::uint32_t kMirrorSpotCountMax = 4;
 
-// The cell of a point, by its place along each axis; false if out of range.
+// Finds the cell of a point, by its place along each axis; returns false if out of range.
 bool cell_at(const ReferenceGuide& guide, const Vec3d& point, std::int32_t (&at)[3]) {
   for (int axis = 0; axis < 3; ++axis) {
     double place = point[axis] / guide.cell_size;
@@ -26,7 +26,7 @@ bool cell_at(const ReferenceGuide& guide, const Vec3d& point, std::int32_t (&at)
   return true;
 }
 
-// The table slot of the cell, or one that is free for it.
+// The table slot of the cell, or a free one for it.
 struct Found {
   ReferenceSlot* slot;
   std::uint32_t hash;
@@ -46,7 +46,7 @@ Found slot_of(const ReferenceGuide& guide, const std::int32_t (&at)[3]) {
   }
 }
 
-// The largest side of a spot after adding a point.
+// Largest side of a spot after adding a point.
 double grown_size(const ReferenceSpot& spot, const Vec3d& point) {
   double size = 0;
   for (int axis = 0; axis < 3; ++axis)
@@ -62,7 +62,7 @@ void add_to_spot(const Vec3d& point, ReferenceSpot* spot) {
   ++spot->count;
 }
 
-// Adds the point to the first spot of its kind that stays small, else to a new spot, else to the one that stays
+// Adds the point to the first spot of its kind that stays small, else to a new spot, else to the spot that stays
 // smallest. A light's bright spot is a single one, whatever its size.
 void add_to_cell(const ReferenceWay& way, double size_max, ReferenceCell* cell) {
   std::uint32_t best = 0, count = 0;

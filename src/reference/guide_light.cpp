@@ -1,4 +1,4 @@
-// Paths from the lights, for the guide.
+// Traces paths from the lights for the guide.
 #include <limits>
 
 #include "base/check.h"
@@ -17,13 +17,13 @@ constexpr int kBounceCountMax = 8;
 constexpr double kMirrorMargin = 0.3;  // cells; for spots on mirrors and glass
 constexpr int kNearTrials = 256;       // directions in which to look for a surface near a light
 constexpr double kNearMax = 1.0 / 6;   // relative to the scene's size: closer counts as near
-// In units of that distance: radius of the bright spot on the surface, its middle, and how far it may extend beyond the
+// In units of that distance: radius of the bright spot on the surface, radius of its middle, and its margin beyond the
 // points found.
 constexpr double kBrightReach = 3, kMiddleReach = 1.5, kBrightMargin = 0.25;
 
 bool is_specular(const Material& m) { return !is_zero(m.mirror) || !is_zero(m.transmission); }
 
-// Follows light from a point on an emitter to a point on a mirror or glass, and on.
+// Traces light from a point on an emitter to a point on a mirror or glass, and beyond.
 void follow_light(const Reference& reference, const ReferenceSurface& light, const Vec3d& target, Rng* rng,
                   ReferenceGuide* guide) {
   const FrameData& frame = *reference.world.frame;
@@ -65,7 +65,7 @@ bool is_punctual(const LightPoint& light, LightSampler kind, PunctualLight* p) {
   return true;
 }
 
-// The first surface that light meets in a random direction of its cone.
+// Finds the first surface that light meets in a random direction of its cone.
 bool leave_light(const ReferenceWorld& world, const PunctualLight& light, Rng* rng, ReferenceRay* ray,
                  ReferenceHit* hit) {
   double below = light.height * next_double(rng), sine = std::sqrt(below * (2 - below));
@@ -89,13 +89,13 @@ double nearest_surface(const ReferenceWorld& world, const PunctualLight& light) 
   return nearest;
 }
 
-// The power of a light so near to a surface that it makes a small bright spot there; 0: it needs no guide.
+// Power of a light so near to a surface that it makes a small bright spot there; 0: it needs no guide.
 double near_power(const ReferenceWorld& world, const PunctualLight& light, double scene_size) {
   if (!(nearest_surface(world, light) < kNearMax * scene_size)) return 0;
   return light.height * max_component(light.intensity);
 }
 
-// Follows light to the surface near the light, and on by the lobes there.
+// Traces light to the surface near the light, and on by the lobes there.
 void follow_near_light(const Reference& reference, const PunctualLight& light, std::uint32_t path_count,
                        std::uint32_t ordinal, ReferenceGuide* guide) {
   const FrameData& frame = *reference.world.frame;
@@ -135,7 +135,7 @@ double size_of(const Array<ReferenceEmitter>& parts) {
   return std::sqrt(area);
 }
 
-// The longest side of the bounds of the frame's geometry.
+// Longest side of the bounds of the frame's geometry.
 double scene_extent(const FrameData& frame) {
   double extent = 0;
   for (int axis = 0; axis < 3; ++axis) {

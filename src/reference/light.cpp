@@ -45,7 +45,7 @@ Vec3d contact_transmittance(const FrameData& frame, const ReferenceContact& cont
   return result * (1 - boundary_reflectance(cosine, from / to, &cos_t));
 }
 
-// A light of the frame at a point: its direction, distance, and irradiance on a surface facing it.
+// Samples a light of the frame at a point: direction, distance, and irradiance on a surface facing it.
 bool reach(const LightPoint& light, LightSampler kind, const Vec3d& point, Vec3d* direction, double* distance,
            Vec3d* irradiance) {
   if (kind == find_light_sampler(Effect::directional_light)) {
@@ -87,7 +87,7 @@ Vec3d area_light(const Reference& reference, const ReferenceOptions& options, co
   std::uint32_t triangle = place.triangle;
   bool model = options.transport == Transport::model;
   const bool own = &material_of(frame, triangle) == s.material;
-  if (model && own && has_stored_light(frame)) return {0, 0, 0};  // it is in the stored light
+  if (model && own && has_stored_light(frame)) return {0, 0, 0};  // stored light includes it
   Vec3d to_light = place.point - s.point;
   double distance = length(to_light);
   if (!(distance > 0) || triangle == s.triangle) return {0, 0, 0};
@@ -98,7 +98,7 @@ Vec3d area_light(const Reference& reference, const ReferenceOptions& options, co
   if (!(cosine > 0) || !(cos_light > 0) || is_zero(light.emission)) return {0, 0, 0};
   double density = emitter_density(reference, triangle) * distance * distance / cos_light;
   double weight = model || !goes_on ? 1 : power_heuristic(density, guided_density(s, to_viewer, direction));
-  // In the model, a coat over a lamp does not dim the light on other surfaces.
+  // In the model, a coat over a lamp does not dim its light on other surfaces.
   const Vec3d sent = model && light.passes > 0 ? light.emission / light.passes : light.emission;
   Vec3d sum = lobe_value(s, to_viewer, direction) * sent * (cosine * weight / density);
   if (is_zero(sum)) return sum;
@@ -136,8 +136,8 @@ Vec3d transmittance(const ReferenceWorld& world, const ReferenceRay& ray, const 
 
 namespace {
 
-// One light's radiance towards the viewer; false if it contributes nothing. `weight` is the irradiance times the
-// cosine.
+// One light's radiance towards the viewer; returns false if it contributes nothing. `weight` is the irradiance times
+// the cosine.
 bool is_own(const FrameData& frame, const ReferenceSurface& s, const LightPoint& light) {
   return light.material != kNone && &frame.scene->materials[light.material] == s.material;
 }
@@ -165,12 +165,12 @@ Vec3d arriving(const Reference& reference, const ReferenceSurface& s, std::uint3
                                     {kNone, frame.lights[i].material != kNone ? &frame.lights[i] : nullptr, false});
 }
 
-// A flat lamp as polygon_light.h has it, and how much of its light a surface gets as it sets.
+// A flat lamp as in polygon_light.h, and the fraction of its light that a surface gets as it sets.
 struct ReferenceLamp {
-  double irradiance = 0;  // of the brightest channel
-  double highest = 0;     // of its corners; 0: none is below the horizon
+  double irradiance = 0;  // brightest channel
+  double highest = 0;     // highest corner; 0: none is below the horizon
 };
-// False if it is too far away.
+// Returns false if it is too far away.
 bool view_lamp(const LightPolygon& polygon, const ReferenceSurface& s, ReferenceLamp* lamp) {
   Vec3d corners[kLightCornerMax], clipped[2 * kLightCornerMax];
   double lowest = kInfinity, highest = -kInfinity;
@@ -190,7 +190,7 @@ bool view_lamp(const LightPolygon& polygon, const ReferenceSurface& s, Reference
   return true;
 }
 
-// The glossy lobe of a surface in two parts, and the light of the sharp one.
+// The glossy lobe of a surface in two parts, and the light reflected by the sharp one.
 struct ReferenceGloss {
   const LinearForm* form = nullptr;  // null: it is not divided
   LobePartsD parts = {};
@@ -211,7 +211,7 @@ ReferenceGloss find_gloss(const LightPolygon& polygon, const ReferenceSurface& s
   return gloss;
 }
 
-// The light of a lamp's points, weighted so that their sum, unblocked, is that of its polygon.
+// Light of a lamp's points, weighted so that without shadows they sum to the polygon's light.
 Vec3d sum_lamp(const Reference& reference, const ReferenceSurface& s, const Vec3d& to_viewer, const LightRun& run,
                std::uint32_t first, const ReferenceLamp& lamp) {
   const FrameData& frame = *reference.world.frame;
@@ -258,7 +258,7 @@ Vec3d sum_light_points(const Reference& reference, const ReferenceSurface& s, co
       const LightPoint& light = frame.lights[i];
       const bool is_area = light.material != kNone;
       if (is_area && !with_area_lights) continue;
-      // A piece of an emitter does not light itself; stored light has that of its material.
+      // A piece of an emitter does not light itself; stored light includes that of its own material.
       if (is_area && is_own(frame, s, light) &&
           (has_stored_light(frame) || is_of_piece(frame, s.triangle, light)))
         continue;

@@ -22,20 +22,20 @@ struct Path {
   Vec3d weight = {1, 1, 1};
   double worth = 1;  // throughput by the surfaces alone, however directions were sampled
   MediumStack media;
-  bool sees_lights = true;  // in full: next-event estimation has not sampled them
+  bool sees_lights = true;  // in full: not sampled by next-event estimation
   Vec3d scattered_at;       // origin of the last next-event estimation,
-  double density = 0;       // and the density with which the path left it
+  double density = 0;       // and density with which the path left it
 };
 
-// The face of a contact that the ray interacts with: a blending one with the probability of its opacity, else the one
-// behind. Null: the ray passes.
+// Picks the face of a contact with which the ray interacts: a blending one with the probability of its opacity, else
+// the one behind. Null: the ray passes.
 const ReferenceHit* pick_face(const FrameData& frame, const ReferenceContact& contact, ReferenceSamples* samples) {
   for (std::uint32_t i = 0; i < contact.count; ++i)
     if (lies_over(frame, contact, i) && samples->next() < alpha_of(frame, contact.face[i])) return &contact.face[i];
   return face_behind(frame, contact);
 }
 
-// The surface that a ray meets, past those it passes. False: none. Applies absorption on the way.
+// Finds the surface that a ray meets, beyond those it passes. Returns false if there is none. Applies absorption.
 bool find_surface(const Reference& reference, const ReferenceRay& ray, Path* path, ReferenceSamples* samples,
                   ReferenceSurface* s, ReferenceContact* contact) {
   const FrameData& frame = *reference.world.frame;
@@ -58,7 +58,7 @@ bool find_surface(const Reference& reference, const ReferenceRay& ray, Path* pat
   return false;
 }
 
-// Continues the path by one of the surface's lobes; false: it ends. Sets the weight and what the next emitter needs.
+// Continues the path by one of the surface's lobes; false: it ends. Sets the weight and the data for the next emitter.
 bool scatter(const Reference& reference, const ReferenceOptions& options, const ReferenceSurface& s,
              const ReferenceContact& contact, ReferenceRay* ray, Path* path, ReferenceSamples* samples) {
   const FrameData& frame = *reference.world.frame;
@@ -102,7 +102,7 @@ bool scatter(const Reference& reference, const ReferenceOptions& options, const 
   return !is_zero(path->weight);
 }
 
-// The share of an emitter's radiance due to a path that meets it.
+// Share of an emitter's radiance credited to a path that meets it.
 double emission_weight(const Reference& reference, const ReferenceSurface& s, const Vec3d& direction,
                        const Path& path) {
   if (path.sees_lights) return 1;
@@ -112,7 +112,7 @@ double emission_weight(const Reference& reference, const ReferenceSurface& s, co
   return power_heuristic(path.density, area_density * dot(way, way) / cos_light);
 }
 
-// The share of the environment's radiance due to a path that meets it.
+// Share of the environment's radiance credited to a path that meets it.
 double environment_weight(const Reference& reference, const Vec3d& direction, const Path& path) {
   if (path.sees_lights || reference.environment_shares.empty()) return 1;
   return power_heuristic(path.density, environment_density(reference, direction));

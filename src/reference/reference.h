@@ -1,6 +1,6 @@
 // The oracle: a path tracer in double precision with next-event estimation and multiple importance sampling [Veach
 // 1997, sec. 9.2], without clamping; only Russian roulette ends paths. It shares the scene and its textures with the
-// renderer, but no arithmetic. For desktops: it takes its time.
+// renderer, but no arithmetic. Desktop only: it is slow.
 #pragma once
 #include "base/rng.h"
 #include "reference/exact_sum.h"
@@ -18,14 +18,14 @@ enum class Transport {
   physical,
 };
 
-// Changes whenever samples change, so that those of different programs are not added up.
+// Incremented whenever samples change, so that those of different programs are not added up.
 constexpr int kReferenceSampler = 1;
 
 struct ReferenceOptions {
   Transport transport = Transport::physical;
   std::uint32_t samples_per_pixel = 64;   // preferably a power of two, see sobol.h
   std::uint32_t first_sample = 0;         // of a pixel's sequence: continues an earlier picture
-  std::uint32_t depth_max = 0xFFFFFFFFu;  // after that many scatterings a path takes direct light and ends; in the
+  std::uint32_t depth_max = 0xFFFFFFFFu;  // after that many scatterings, a path takes direct light and ends; in the
                                           // renderer's model with FrameData::beyond_depth
   std::uint64_t seed = 1;
 };
@@ -36,7 +36,7 @@ struct ReferenceEmitter {
   double share_end, area;
 };
 
-// Spots by which light comes from mirrors and glass, see guide.h.
+// Spots through which light arrives by mirrors and glass, see guide.h.
 constexpr std::uint32_t kReferenceSpotCountMax = 8;
 struct ReferenceSpot {
   Vec3d low, high;      // box of the points that reflect or refract it
@@ -76,7 +76,7 @@ Reference make_reference(const FrameData& frame, Arena* arena, std::uint32_t gui
 Vec3d sample_radiance(const Reference& reference, const ReferenceOptions& options, const Vec3d& origin,
                       const Vec3d& direction, Rng* rng);
 
-// The mean samples of rows [row_begin, row_end), width × rows of them. A pixel depends only on the seed and its
+// Mean samples of rows [row_begin, row_end), width × rows of them. A pixel depends only on the seed and its
 // position.
 void trace_reference(const Reference& reference, const ReferenceOptions& options, std::uint32_t row_begin,
                      std::uint32_t row_end, Vec3d* means);

@@ -1,4 +1,4 @@
-// Which samples of a sequence are there: disjoint ranges in ascending order that do not touch.
+// A set of samples of a sequence: disjoint ranges in ascending order that do not touch.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -11,9 +11,9 @@ struct SampleRange {
 using SampleSet = std::vector<SampleRange>;
 
 std::uint64_t sample_count(const SampleSet& set);
-// The parts of a range that the set lacks.
+// Returns the parts of a range that the set lacks.
 SampleSet missing_samples(const SampleSet& set, const SampleRange& range);
-// Adds a range, none of which the set has.
+// Adds a range; the set must have none of it.
 void add_samples(const SampleRange& range, SampleSet* set);
 
 }  // namespace pocketray

@@ -9,7 +9,7 @@ ReferenceSamples::ReferenceSamples(std::uint64_t seed, std::uint64_t pixel)
 
 void ReferenceSamples::begin_path(std::uint32_t index) {
   index_ = index;
-  rng_ = make_rng(seed_ + (index + 1) * 0x9E3779B97F4A7C15u, pixel_);  // distinct from those of other indices
+  rng_ = make_rng(seed_ + (index + 1) * 0x9E3779B97F4A7C15u, pixel_);  // independent of other indices
   for (bool& made : made_) made = false;
   lights_ = directions_ = choices_ = 0;
 }
@@ -17,7 +17,7 @@ void ReferenceSamples::begin_path(std::uint32_t index) {
 double ReferenceSamples::coordinate(int group, int dimension) {
   if (!even_) return next();
   if (!made_[group]) point_[group] = scrambled_sobol_point(index_, group_seed_[group]), made_[group] = true;
-  // Anywhere in its cell of 2⁻³², so that it stays continuous when rescaled after a choice.
+  // Uniform in its cell of 2⁻³², so that it stays continuous when rescaled after a choice.
   return (point_[group].x[dimension] + next_u32(&rng_) * 0x1p-32) * 0x1p-32;
 }
 

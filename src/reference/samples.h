@@ -15,7 +15,7 @@ class ReferenceSamples {
  public:
   // Independent numbers only.
   explicit ReferenceSamples(const Rng& rng) : rng_(rng) {}
-  // For one pixel; begin_path() then begins each path, which depends only on seed, pixel and index.
+  // For one pixel; begin_path() then starts each path, which depends only on seed, pixel and index.
   ReferenceSamples(std::uint64_t seed, std::uint64_t pixel);
   void begin_path(std::uint32_t index);
 

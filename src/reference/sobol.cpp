@@ -11,7 +11,7 @@ constexpr std::uint32_t reverse_bits(std::uint32_t x) {
   return (x >> 1 & 0x55555555u) | (x & 0x55555555u) << 1;
 }
 
-// For each value of each four bits of an index, the sum of direction numbers, with bits reversed.
+// Sum of direction numbers for each value of each four bits of an index, with bits reversed.
 struct Table {
   std::uint32_t sum[8][16][kSobolDimensionCount] = {};
   constexpr Table() {
@@ -40,7 +40,7 @@ struct Table {
 };
 constexpr Table kTable;
 
-// The point, with the bits of each coordinate reversed.
+// Returns the point with the bits of each coordinate reversed.
 SobolPoint reversed_point(std::uint32_t index) {
   SobolPoint point = {};
   for (int part = 0; index; ++part, index >>= 4)

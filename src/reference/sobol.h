@@ -15,7 +15,7 @@ struct SobolPoint {
 SobolPoint sobol_point(std::uint32_t index);
 
 // Point `index` of the sequence, shuffled and scrambled by the seed [Burley 2020, "Practical Hash-based Owen
-// Scrambling", JCGT 9(4), listing 3]. Any 2ᵏ points that start at a multiple of 2ᵏ are spread as evenly as those of the
+// Scrambling", JCGT 9(4), listing 3]. Any 2ᵏ points that start at a multiple of 2ᵏ are spread as evenly as in the
 // sequence itself.
 SobolPoint scrambled_sobol_point(std::uint32_t index, std::uint32_t seed);
 

@@ -14,7 +14,7 @@ namespace {
 // Relative to coordinates: nearer hits may be the surface itself, by rounding.
 constexpr double kOwnSurface = 0x1p-40;
 
-// Of a texture at the surface.
+// Coordinates of a texture at the surface.
 Vec2 uv_of(const FrameData& frame, const TextureUse& use, const ReferenceSurface& s) {
   const float u = static_cast<float>(s.u), v = static_cast<float>(s.v);
   return has(frame.mask, Effect::second_uv) ? texture_uv(*frame.scene, use, s.triangle, u, v)
@@ -27,7 +27,7 @@ Vec3d numbers_at(const FrameData& frame, const TextureUse& use, const ReferenceS
   return to_double(sample_numbers(*frame.scene, use, uv_of(frame, use, s), frame.settings.texture_filter));
 }
 
-// Lobes of a metallic-roughness texture, by the formulas of the glTF specification, secs. 3.9.2 and B.2.2, and the
+// Applies a metallic-roughness texture by the formulas of the glTF specification, secs. 3.9.2 and B.2.2, and the
 // mirror's share of src/import/README.md.
 void apply_metallic_roughness(const FrameData& frame, const MaterialMaps& maps, const Vec3d& tint,
                               ReferenceSurface* s) {
@@ -58,7 +58,7 @@ void apply_metallic_roughness(const FrameData& frame, const MaterialMaps& maps, 
   s->mapped.mirror = to_float(s->mirror);
 }
 
-// Probabilities of sampling the glossy lobe and the coat's rather than the diffuse one.
+// Probabilities of sampling the glossy lobe and the coat's lobe instead of the diffuse one.
 struct LobeShares {
   double glossy = 0, coat = 0;
 };
@@ -73,8 +73,8 @@ LobeShares lobe_shares(const ReferenceSurface& s, const Vec3d& to_viewer) {
 }
 LobeFrameD coat_frame(const ReferenceSurface& s) { return {s.coat_normal, {0, 0, 0}}; }
 
-// The frame of maps, from ∂P/∂u and ∂P/∂v, which solve e = u ∂P/∂u + v ∂P/∂v for both edges, or as the vertices have
-// it; shade/normal_map.h has the rules. False if there is none.
+// Frame of maps from ∂P/∂u and ∂P/∂v, which solve e = u ∂P/∂u + v ∂P/∂v for both edges, or from the vertices;
+// shade/normal_map.h has the rules. Returns false if there is none.
 bool map_frame(const FrameData& frame, const Vec3d* corner, const ReferenceSurface& s, Vec3d* tangent,
                Vec3d* bitangent) {
   const Scene& scene = *frame.scene;
@@ -110,7 +110,7 @@ bool map_frame(const FrameData& frame, const Vec3d* corner, const ReferenceSurfa
   return !is_zero(*tangent);
 }
 
-// The normal of a normal texture (sec. 3.9.3).
+// Normal from a normal texture (sec. 3.9.3).
 Vec3d normal_of_map(const FrameData& frame, const TextureUse& map, float scale, const Vec3d* corner,
                     const Vec3d& direction, const ReferenceSurface& s) {
   Vec3d numbers = numbers_at(frame, map, s);

@@ -1,4 +1,4 @@
-// Builds the hierarchy of the reference's triangles by the surface-area heuristic.
+// Builds the hierarchy over the reference's triangles by the surface-area heuristic.
 #include <limits>
 
 #include "base/box.h"
@@ -85,7 +85,7 @@ Box box_of(const Item* items, std::uint32_t count) {
   return box;
 }
 
-// Divides a range into up to four parts, each time the one with the largest area × count.
+// Divides a range into up to four parts, each time splitting the one with the largest area × count.
 int part_in_four(Item* items, Range* ranges, bool halve) {
   int count = 1;
   while (count < 4) {

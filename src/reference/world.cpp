@@ -42,7 +42,7 @@ BoxRay make_box_ray(const ReferenceWorld& world, const ReferenceRay& ray, double
   return b;
 }
 
-// Bits of the children whose boxes the ray enters before t_max; *entry is where.
+// Bits of the children whose boxes the ray enters before t_max; *entry receives where.
 unsigned enter(const ReferenceNode& n, const BoxRay& ray, float t_max, Float4* entry) {
   Float4 near = Float4::splat(ray.t_min), far = Float4::splat(t_max);
   for (int axis = 0; axis < 3; ++axis) {
@@ -77,7 +77,7 @@ struct LeafHits {
 };
 void spill(const Double4& a, double* values) { std::memcpy(values, &a, sizeof(a)); }
 
-// Whether a ray that hits a triangle close by begins on its plane, as in accel/triangle.h.
+// Returns whether a ray that hits a nearby triangle begins on its plane, as in accel/triangle.h.
 bool is_on_plane(const ReferenceLeaf& leaf, int lane, const Shear& s) {
   alignas(32) double origin[3][4], inverse[4];
   spill(s.origin_x, origin[0]), spill(s.origin_y, origin[1]), spill(s.origin_z, origin[2]), spill(s.sz, inverse);
@@ -89,7 +89,7 @@ bool is_on_plane(const ReferenceLeaf& leaf, int lane, const Shear& s) {
   return begins_on_plane(static_cast<float>(inverse[0]), corner[0], corner[1], corner[2]);
 }
 
-// Bits of the triangles of a leaf that the line of the ray meets within (t_min, t_max].
+// Bits of the triangles of a leaf that the ray's line meets within (t_min, t_max].
 unsigned meet(const ReferenceLeaf& leaf, const Shear& s, double t_min, double t_max, LeafHits* hits) {
   Double4 x[3], y[3], z[3];
   for (int i = 0; i < 3; ++i) {
@@ -201,7 +201,7 @@ Obstacle find_obstacle(const ReferenceWorld& world, const ReferenceRay& ray, con
           is_hole(frame, triangle, hits.u[i], hits.v[i]))
         continue;
       worst = blocks(material_of(frame, triangle), rules) ? Obstacle::opaque : Obstacle::clear;
-      if (worst == Obstacle::opaque) t_max = -1;  // no box is entered any more
+      if (worst == Obstacle::opaque) t_max = -1;  // enters no further box
     }
   });
   return worst;

@@ -32,7 +32,7 @@ struct ReferenceRay {
   double t_min, t_max;  // open interval
 };
 
-// Hits are ordered by t, then by triangle. After the last comes one with kNone and infinite t.
+// Hits are ordered by t, then by triangle. After the last one, kNone with infinite t is returned.
 struct ReferenceHit {
   double t, u, v;  // u, v: weights of the triangle's vertices 1 and 2
   std::uint32_t triangle;
@@ -40,20 +40,20 @@ struct ReferenceHit {
 
 // Bytes that the hierarchy takes from the arena.
 std::size_t reference_world_need(std::uint32_t triangle_count);
-// Built over the frame's posed triangles; the frame must outlive it.
+// Builds it over the frame's posed triangles; the frame must outlive it.
 ReferenceWorld make_reference_world(const FrameData& frame, Arena* arena);
 
-// The first hit after `after` in the order of hits (null: the very first), not counting holes of cut-outs.
+// Returns the first hit after `after` in the order of hits (null: the very first), not counting cutouts.
 ReferenceHit next_hit(const ReferenceWorld& world, const ReferenceRay& ray, const ReferenceHit* after);
 
-// What casts no shadow, and whether transparent surfaces cast a full one.
+// Which triangles cast no shadow, and whether transparent surfaces cast a full one.
 struct ShadowRules {
-  std::uint32_t but_triangle;     // casts none; kNone: none
-  const LightPoint* but_beside;   // nor what is of the same flat piece as this point of a lamp; null: none
-  bool transparent_blocks;                   // glass blocks light; blending surfaces do not
+  std::uint32_t but_triangle;    // casts no shadow; kNone: none
+  const LightPoint* but_beside;  // nor do triangles in the flat piece of this lamp's point; null: none
+  bool transparent_blocks;       // glass blocks light; blending surfaces do not
 };
 enum class Obstacle { none, clear, opaque };
-// The strongest obstacle on a ray: something opaque; else something that may transmit light; else none.
+// Returns the strongest obstacle on a ray: something opaque; else something that may transmit light; else none.
 Obstacle find_obstacle(const ReferenceWorld& world, const ReferenceRay& ray, const ShadowRules& rules);
 
 inline std::uint32_t material_index(const FrameData& frame, std::uint32_t triangle) {
@@ -65,9 +65,9 @@ inline const Material& material_of(const FrameData& frame, std::uint32_t triangl
 inline Vec3d corner_of(const FrameData& frame, std::uint32_t triangle, std::uint32_t i) {
   return to_double(frame.positions[frame.scene->triangles[triangle].vertex(i)]);
 }
-// Alpha of the material at a hit, of full-size texels.
+// Alpha of the material at a hit, from full-size texels.
 double alpha_at(const FrameData& frame, std::uint32_t triangle, double u, double v);
-// Whether a triangle is of the lamp's flat piece that a point of it is on, as the renderer has it.
+// Returns whether a triangle is in the lamp's flat piece that contains a point of it, as in the renderer.
 bool is_of_piece(const FrameData& frame, std::uint32_t triangle, const LightPoint& point);
 inline bool casts_shadow(const FrameData& frame, std::uint32_t triangle, const ShadowRules& rules) {
   return triangle != rules.but_triangle && !(rules.but_beside && is_of_piece(frame, triangle, *rules.but_beside));

@@ -1,4 +1,4 @@
-// Encrypted links to render servers, in builds that have TLS; the others refuse --key.
+// Encrypted links to render servers in builds with TLS; others refuse --key.
 #pragma once
 #include <string>
 
@@ -8,7 +8,7 @@
 
 namespace pocketray {
 
-// Reads the file of --key. Fails in builds without TLS, too.
+// Reads the file of --key. Also fails in builds without TLS.
 Status read_key(const std::string& path, platform::SharedKey* key);
 
 // Bytes of memory for an encrypted link of that many streams; 0 without TLS.

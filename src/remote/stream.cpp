@@ -15,7 +15,7 @@ void compact(Array<std::uint8_t> bytes, std::size_t* begin, std::size_t* end) {
   *end -= *begin, *begin = 0;
 }
 
-// Removes the name that a link's error begins with (platform/link.h).
+// Removes the name at the start of a link's error (platform/link.h).
 void leave_out(const char* name, platform::Error* error) {
   const std::size_t length = std::strlen(name);
   if (length == 0 || std::strncmp(error->text, name, length) != 0) return;
@@ -44,7 +44,7 @@ MessageStream make_message_stream(std::size_t in_bytes, std::size_t out_bytes, A
 
 void start_message_stream(MessageStream* s, platform::Link* link, int connection) {
   CHECK(link != nullptr && connection >= 0);
-  CHECK_LT(s->stream, 0);  // the connection before is closed
+  CHECK_LT(s->stream, 0);  // the previous connection is closed
   Array<std::uint8_t> in = s->in, out = s->out;
   std::uint32_t message_bytes_max = s->message_bytes_max;
   *s = MessageStream();
@@ -83,7 +83,7 @@ bool flush_message_stream(MessageStream* s, platform::Error* error) {
     if (result == platform::LinkResult::later) return true;
     if (result != platform::LinkResult::done) return fail_unnamed(*s, error);
     s->out_begin += count, s->bytes_out += count;
-    CHECK_LE(s->out_begin, s->out_end);  // nor sends more than it is given
+    CHECK_LE(s->out_begin, s->out_end);  // a link sends no more than it is given
   }
   s->out_begin = s->out_end = 0;
   return true;
@@ -138,10 +138,10 @@ bool send_message(MessageStream* s, const Message& message) {
 }
 
 const char* malformed_text(const MessageStream& s) {
-  // An alert or a handshake of any TLS [RFC 5246, sec. 6.2.1]; no message has such a type.
+  // A TLS alert or handshake [RFC 5246, sec. 6.2.1]; no message has such a type.
   const std::uint8_t* bytes = s.in.data + s.in_begin;
   const bool is_tls = input_bytes(s) >= 2 && (bytes[0] == 21 || bytes[0] == 22) && bytes[1] == 3;
-  return is_tls ? "it asks for a key: use the one that it was given (--key)" : "it sent a malformed message";
+  return is_tls ? "it requires a key: use the server's key (--key)" : "it sent a malformed message";
 }
 
 Status check_version(const Hello& hello) {

@@ -12,7 +12,7 @@
 namespace pocketray {
 namespace {
 
-// Poses stay within the range of coordinates, so that the product of two values is finite.
+// Keeps poses within the range of coordinates, so that the product of two values is finite.
 float hold(float x) {
   if (std::fabs(x) <= kCoordinateMax) return x;
   return x > 0 ? kCoordinateMax : x < 0 ? -kCoordinateMax : 0.0f;
@@ -35,7 +35,7 @@ void copy(Array<const T> from, Array<T> to) {
   if (to.count) std::memcpy(static_cast<void*>(to.data), from.data, to.bytes());
 }
 
-// Within the limits of what the channel sets: a spline may overshoot.
+// Clamps to the limits of the channel's target: a spline may overshoot.
 float limited(double value, double low, double high) {
   return static_cast<float>(value > low ? value < high ? value : high : low);
 }
@@ -50,7 +50,7 @@ void set_camera_size(float value, Camera* camera) {
       limited(static_cast<double>(value), limit.low, limit.high);
 }
 
-// Channels of lights, cameras and materials.
+// Applies channels of lights, cameras and materials.
 void apply_value(const Scene& scene, const Channel& channel, double time, Pose* pose) {
   constexpr double kMost = static_cast<double>(kRadianceMax);
   float value[3];
@@ -162,7 +162,7 @@ bool is_identity(const Transform& t) {
   return true;
 }
 
-// A mesh whose rest pose equals its place in the world, and which nothing moved, keeps its bits: its normals are not
+// A mesh that nothing moved and whose rest pose equals its place in the world keeps its bits: its normals are not
 // normalised a second time.
 bool stays_at_rest(const Scene& scene, const MovingMesh& mesh, const Transform& placed) {
   return scene.rest_positions.data == scene.positions.data && mesh.rest_begin == mesh.vertex_begin &&
@@ -239,7 +239,7 @@ double wrapped(double seconds, double duration) {
   if (!(duration > 0)) return 0;
   double time = std::fmod(seconds, duration);  // exact
   if (time < 0) time += duration;
-  return time < duration ? time : 0;  // a tiny negative time rounds up to the duration; NaN ends here, too
+  return time < duration ? time : 0;  // a tiny negative time rounds up to the duration; NaN also ends here
 }
 
 }  // namespace

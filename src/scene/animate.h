@@ -5,24 +5,24 @@
 
 namespace pocketray {
 
-// The caller's transform of a node, in place of its animation.
+// A node's transform from the caller, which replaces its animation.
 struct NodeOverride {
   Transform to_parent;
   bool on = false;
 };
 
-// Everything that moves, at one time. All arrays are empty for a static scene; otherwise they are writable and as long
-// as the scene's.
+// The state of everything that moves at one time. All arrays are empty for a static scene; otherwise they are writable
+// and as long as the scene's.
 struct Pose {
   Array<Vec3> positions;                // world space; empty when no vertex moves: use Scene::positions
   Array<Vec3> normals;                  // world space; empty when no vertex moves or the scene has none
-  Array<Transform> nodes;               // node → world; without extent where the node is hidden
-  Array<std::uint8_t> visible;          // one per node: it and all above it are
+  Array<Transform> nodes;               // node → world; a hidden node has no extent
+  Array<std::uint8_t> visible;          // one per node: it and all its ancestors are visible
   Array<Light> lights;                  // world space; their node is kNone
   Array<Camera> cameras;                // world space; their node is kNone
-  Array<Node> local_nodes;              // as the animation sets them, relative to their parents
-  Array<float> weights;                 // as the animation sets them
-  Array<Material> materials;            // as the animation sets them; empty: it sets none
+  Array<Node> local_nodes;              // as animated, relative to their parents
+  Array<float> weights;                 // as animated
+  Array<Material> materials;            // as animated; empty: no material is
   Array<Transform> joints;              // rest pose → world, one per Scene::joints
   Array<const NodeOverride> overrides;  // one per node, from the caller; empty: only the animation moves nodes
 };
@@ -38,7 +38,7 @@ Pose make_pose(const Scene& scene, Arena* arena);
 // ±kCoordinateMax, so a pose is always finite. Allocates nothing; does nothing for a static scene.
 void pose_at(const Scene& scene, std::uint32_t animation_index, double seconds, Pose* pose);
 
-// Whether a channel sets a material.
+// Returns whether a channel animates a material.
 bool animates_materials(const Scene& scene);
 
 }  // namespace pocketray

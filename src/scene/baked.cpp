@@ -12,8 +12,8 @@ namespace {
 static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__,
               "files are used as they lie: a big-endian CPU would have to swap");
 
-// The file holds these structs as they are in memory. None may have padding: their sizes are the sums of their members'
-// on every ABI, and writing them is copying them.
+// The file holds these structs as in memory. None may have padding: their sizes are the sums of their members' on every
+// ABI, and writing them is copying them.
 static_assert(sizeof(SceneInfo) == 64 + 6 * 4 + 6 * 4, "no padding");
 static_assert(sizeof(Vec3) == 12 && sizeof(Vec2) == 8 && sizeof(Rgba16) == 8 && sizeof(Triangle) == 12, "no padding");
 static_assert(sizeof(Texture) == 4 + 2 * 2 + 4 + 4, "no padding");
@@ -53,8 +53,8 @@ struct Section {
 };
 static_assert(sizeof(Section) == 24, "no padding");
 
-// Calls visit(name, array) for every array of the scene. A section's kind, and its place in the file, is its place
-// here: append new arrays at the end and raise kBakedVersion.
+// Calls visit(name, array) for every array of the scene. A section's kind and its place in the file are given by its
+// position here: append new arrays at the end and raise kBakedVersion.
 template <class SceneType, class Visit>
 void for_each_array(SceneType& scene, Visit visit) {
   visit("positions", scene.positions);

@@ -11,7 +11,7 @@
 namespace pocketray {
 
 constexpr std::uint32_t kBakedVersion = 14;    // as written
-constexpr std::uint32_t kBakedVersionMin = 7;  // the oldest that is read; it has no environment, grains or tangents
+constexpr std::uint32_t kBakedVersionMin = 7;  // oldest readable version; it has no environment, grains or tangents
 
 // Size in bytes of the file that baked_write() makes.
 std::size_t baked_size(const Scene& scene);
@@ -22,8 +22,8 @@ void baked_write(const Scene& scene, std::uint8_t* bytes);
 // count, offset, index and float; after that the scene can be trusted. Allocates nothing, copies nothing.
 Status baked_open(const std::uint8_t* bytes, std::size_t byte_count, Scene* scene);
 
-// The checks of baked_open() on any scene: indices in range, floats finite and below kCoordinateMax, nodes after their
-// parents, key times increasing. The message names the faulty element.
+// Applies the checks of baked_open() to any scene: indices in range, floats finite and below kCoordinateMax, nodes
+// after their parents, key times increasing. The message names the faulty element.
 Status validate_scene(const Scene& scene);
 
 // Identity of the content, wherever its arrays lie: the CRC-32s of all arrays, combined independently of order. For

@@ -41,14 +41,14 @@ Hermite hermite(const KeyPosition& at) {
   return {2 * t3 - 3 * t2 + 1, at.step * (t3 - 2 * t2 + t), -2 * t3 + 3 * t2, at.step * (t3 - t2)};
 }
 
-// To float, clamped to ±kCoordinateMax: a spline may overshoot.
+// Narrows to float, clamped to ±kCoordinateMax: a spline may overshoot.
 float narrowed(double x) {
   if (x > kCoordinateMax) return kCoordinateMax;
   if (x < -kCoordinateMax) return -kCoordinateMax;
   return static_cast<float>(x);
 }
 
-// One component of the value between two keys; `key` points at the first element of the key, of `width` floats each.
+// One component of the value between two keys; `key` points to the first element of the key, of `width` floats each.
 double cubic(const Hermite& h, const float* key, std::uint32_t width, std::uint32_t component) {
   const float* next = key + 3 * width;
   return h.value0 * key[width + component] + h.tangent0 * key[2 * width + component] +

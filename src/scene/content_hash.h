@@ -15,7 +15,7 @@ inline bool operator!=(const ContentHash& a, const ContentHash& b) { return !(a 
 
 ContentHash content_hash(const void* bytes, std::size_t byte_count);
 
-// The same for bytes that arrive in parts; the size of every part but the last is a multiple of 16.
+// Hashes bytes that arrive in parts; the size of every part but the last must be a multiple of 16.
 struct ContentHasher {
   std::uint64_t a = 0, b = 0, byte_count = 0;
 };

@@ -13,7 +13,7 @@ namespace pocketray {
 
 struct EnvironmentInfo {
   float scale = 1;               // of all texels; a power of two
-  std::uint32_t side = 0;        // texels, of the map that rays see; a power of two
+  std::uint32_t side = 0;        // texels of the map that rays see; a power of two
   std::uint32_t gloss_side = 0;  // of the first map for glossy lobes; a power of two, at least 4
   Vec3 radiance_max;             // no texel exceeds it
   // Irradiance / π on a surface of normal n is the sum of these times 1, x, y, z, xy, yz, xz, x² − z², 3y² − 1.
@@ -35,8 +35,8 @@ constexpr std::uint32_t environment_texel_count(std::uint32_t side, std::uint32_
   return gloss_level_begin(side, gloss_side, kGlossLevelCount);
 }
 
-// A texel: red, green and blue in 9 bits each, from the lowest, × 2^(e − 24), where e is in the top 5. Every pattern is
-// finite and at least 0, and decoding is exact.
+// Decodes a texel: red, green and blue in 9 bits each, from the lowest, × 2^(e − 24), where e is in the top 5. Every
+// pattern is finite and at least 0, and decoding is exact.
 inline Vec3 environment_texel(std::uint32_t texel) {
   const std::uint32_t bits = ((texel >> 27) + 127 - 24) << 23;
   float unit;
@@ -46,10 +46,10 @@ inline Vec3 environment_texel(std::uint32_t texel) {
          unit;
 }
 constexpr float kEnvironmentTexelMax = 511.0f * 128;
-// The nearest texel to a colour within 0 … kEnvironmentTexelMax.
+// Nearest texel to a colour within 0 … kEnvironmentTexelMax.
 std::uint32_t to_environment_texel(const Vec3d& color);
 
-// The place of a direction of any length but 0 on the square [−1, 1]².
+// Maps a direction of any length but 0 to the square [−1, 1]².
 template <class T>
 inline void to_octahedral(const Vec3T<T>& direction, T* u, T* v) {
   auto magnitude = [](T x) { return x < 0 ? -x : x; };
@@ -61,8 +61,8 @@ inline void to_octahedral(const Vec3T<T>& direction, T* u, T* v) {
     *u = folded_u;
   }
 }
-// The point of the octahedron |x| + |y| + |z| = 1 at a place: its direction is not unit. A piece of the square spans a
-// solid angle of its area / |point|³.
+// Maps a place on the square to the octahedron |x| + |y| + |z| = 1: the direction is not a unit vector. A piece of the
+// square spans a solid angle of its area / |point|³.
 inline Vec3d from_octahedral(double u, double v) {
   auto magnitude = [](double x) { return x < 0 ? -x : x; };
   const double y = 1 - magnitude(u) - magnitude(v);
@@ -70,7 +70,7 @@ inline Vec3d from_octahedral(double u, double v) {
   return {(1 - magnitude(v)) * (u < 0 ? -1 : 1), y, (1 - magnitude(u)) * (v < 0 ? -1 : 1)};
 }
 
-// The texel at a column and row, each in [−1, side]: beyond the edge of the square lies its mirrored edge.
+// Index of the texel at a column and row, each in [−1, side]: beyond the edge of the square lies its mirrored edge.
 inline std::uint32_t octahedral_index(int column, int row, int side) {
   if (column < 0 || column >= side) column = column < 0 ? 0 : side - 1, row = side - 1 - row;
   if (row < 0 || row >= side) row = row < 0 ? 0 : side - 1, column = side - 1 - column;

@@ -28,7 +28,7 @@ inline void set_lobes(const MetallicRoughness& model, float metallic, float roug
   m->transmission = model.base * passes;
 }
 
-// Whether the lobes change from point to point.
+// Returns whether the lobes change from point to point.
 inline bool has_lobe_map(const MaterialMaps& maps) {
   return maps.metallic_roughness.texture != kNone || maps.specular.texture != kNone ||
          maps.specular_color.texture != kNone;
@@ -37,8 +37,8 @@ inline bool has_map(const MaterialMaps& maps) {
   return has_lobe_map(maps) || maps.normal.texture != kNone || maps.occlusion.texture != kNone;
 }
 
-// Upper bounds of the lobes that the maps make of the material, and the smallest roughness: all are monotonic in
-// metallic and roughness, so that the ends of their ranges have the extremes. A specular texture only dims.
+// Upper bounds of the material's lobes under its maps, and the smallest roughness: all are monotonic in metallic and
+// roughness, so that their extremes are at the ends of the ranges. A specular texture only dims.
 inline Material lobe_bounds(Material m, const MaterialMaps& maps) {
   if (!has_lobe_map(maps)) return m;
   set_lobes(maps.model, maps.metallic_low, maps.roughness_low, 0, &m);

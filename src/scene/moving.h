@@ -1,4 +1,4 @@
-// Which vertices and triangles can move.
+// Tells which vertices and triangles can move.
 #pragma once
 #include <algorithm>
 
@@ -6,7 +6,7 @@
 
 namespace pocketray {
 
-// Whether a vertex lies in one of the runs, which are in ascending order.
+// Returns whether a vertex lies in one of the runs, which are in ascending order.
 inline bool moves(Array<const MovingMesh> runs, std::uint32_t vertex) {
   const MovingMesh* next = std::upper_bound(runs.begin(), runs.end(), vertex,
                                             [](std::uint32_t v, const MovingMesh& m) { return v < m.vertex_begin; });

@@ -1,6 +1,6 @@
-// A stored radiosity solution: the indirect light that reaches diffuse surfaces, as irradiance / π, which times the
-// albedo is radiance. Flat parts of the scene carry grids, whose cells are the patches of [Bastos92]; other triangles a
-// value at each corner, and large ones of them at the corners of the parts into which they are halved.
+// A stored radiosity solution: the indirect light on diffuse surfaces as irradiance / π, which times the albedo is
+// radiance. Flat parts of the scene have grids, whose cells are the patches of [Bastos92]; other triangles have a value
+// at each corner, and large ones at the corners of the parts into which they are halved.
 #pragma once
 #include <cstdint>
 
@@ -30,15 +30,15 @@ struct RadiosityCorners {
   std::uint32_t value[3];
 };
 
-// What a side of a triangle refers to: nothing (kNone), a grid, corners, the values with its vertices' indices, a
-// split, or a cut.
+// Reference of a triangle's side: to nothing (kNone), a grid, corners, the values with its vertices' indices, a split, or
+// a cut.
 constexpr std::uint32_t kRadiosityAtVertices = 0x7FFFFFFFu;
 constexpr std::uint32_t kRadiosityGridBit = 0x80000000u;
 
 // A triangle halved at the middle M of an edge AB, opposite C, into AMC and MBC. A reference to it has
-// kRadiositySplitBit and, as its turn, the place of A among the corners of the triangle. Parts of it are such
+// kRadiositySplitBit and, as its turn, the position of A among the corners of the triangle. Its parts are such
 // references, or indices of corners; from bit kRadiosityLevelShift on, part[0] has the level of the split itself: parts
-// are of higher levels.
+// have higher levels.
 struct RadiositySplit {
   std::uint32_t part[2];
 };

@@ -41,14 +41,14 @@ class Triangle {
   std::uint32_t word_[3] = {0, 0, 0};
 };
 
-// A linear colour as stored per vertex: 16 bits a channel, 65535 = 1.
+// A linear vertex colour: 16 bits per channel, 65535 = 1.
 struct Rgba16 {
   std::uint16_t r, g, b, a;
 };
 
 enum class Wrap : std::uint8_t { repeat, mirror, clamp };
 
-// What a texture stores of its texels: all of them, or blocks of 4 × 4 with 4, 8 or 12 bits a texel (texel_blocks.h).
+// Texel storage: every texel, or blocks of 4 × 4 with 4, 8 or 12 bits per texel (texel_blocks.h).
 enum class TexelFormat : std::uint8_t { exact, color4, color_alpha8, red4, green_blue8, normal8, numbers12 };
 constexpr int kTexelFormatCount = 7;
 
@@ -57,9 +57,9 @@ struct Texture {
   std::uint16_t width, height;  // texels, ≥ 1
   Wrap wrap_u, wrap_v;
   std::uint8_t nearest;      // 1: nearest texel, 0: bilinear; between levels always bilinear
-  std::uint8_t level_count;  // 1: the texels alone; more: smaller ones follow them, see texture_levels.h
+  std::uint8_t level_count;  // 1: level 0 only; more: smaller levels follow it, see texture_levels.h
   TexelFormat format = TexelFormat::exact;
-  std::uint8_t uv_set = 0;  // 0: read by Scene::uvs, 1: by second_uvs
+  std::uint8_t uv_set = 0;  // 0: uses Scene::uvs, 1: second_uvs
   std::uint8_t reserved[2] = {0, 0};
 };
 
@@ -74,9 +74,9 @@ enum class AlphaMode : std::uint8_t { opaque, mask, blend };
 // How a surface interacts with light. Any lobe may be absent (zero); an absent lobe costs nothing.
 struct Material {
   Vec3 diffuse = {0.8f, 0.8f, 0.8f};  // Lambertian albedo; × texture × vertex colour
-  Vec3 specular = {0, 0, 0};          // of the glossy lobe at normal incidence, see brdf/
+  Vec3 specular = {0, 0, 0};          // reflectance of the glossy lobe at normal incidence, see brdf/
   Vec3 mirror = {0, 0, 0};            // reflectance of the perfect mirror
-  // The parts of specular and mirror that texture and vertex colour tint like the diffuse albedo: those of metals.
+  // Parts of specular and mirror that texture and vertex colour tint like the diffuse albedo: those of metals.
   Vec3 specular_tinted = {0, 0, 0}, mirror_tinted = {0, 0, 0};
   float exponent = 0;             // of the Phong lobe, 0 to kPhongExponentMax
   float roughness = 1;            // of the GGX lobe: α, 0 to 1
@@ -95,26 +95,26 @@ struct Material {
   std::uint8_t thin = 0;   // transmits without refraction and encloses nothing (glTF without KHR_materials_volume)
 };
 
-// The metallic-roughness model of glTF, as far as maps do not change it; metallic_roughness.h makes lobes of it.
+// The metallic-roughness model of glTF, except for maps; metallic_roughness.h turns it into lobes.
 struct MetallicRoughness {
   Vec3 base = {0, 0, 0};        // colour of the diffuse lobe and of metals; × texture × vertex colour
   Vec3 dielectric = {0, 0, 0};  // reflectance of a non-metal at normal incidence
   float grazing = 0;            // reflectance of a non-metal at grazing incidence
 };
 
-// Textures that change a material from point to point. Most have numbers for texels, not colours: 0 to 255, linear.
+// Textures that vary a material. Most have numbers for texels, not colours: 0 to 255, linear.
 struct MaterialMaps {
-  // Lobes where there is a metallic_roughness or specular texture: metallic × B, roughness × G. The material's own
-  // lobes are those of the means.
+  // Lobes with a metallic_roughness or specular texture: metallic × B, roughness × G. The material's own lobes are
+  // those of the means.
   MetallicRoughness model;
   TextureUse metallic_roughness;
   float metallic = 0, roughness = 0;
-  // What the texture and the factors amount to. Other values are moved to the nearer end, so that bounds hold.
+  // Range of texture × factor. Other values are clamped to it, so that bounds hold.
   float metallic_low = 0, metallic_high = 0, roughness_low = 0, roughness_high = 0;
-  // Textures of colours: a dielectric's reflectance × alpha; at normal incidence × colour as well.
+  // Colour textures: a dielectric's reflectance × alpha; at normal incidence × colour as well.
   TextureUse specular, specular_color;
-  // The normal in the frame of the tangent, which is of the first texture coordinates: R along u, G against v, B along
-  // the vertex normal, each −1 at 1 (and 0), 0 at 128, 1 at 255. R and G × normal_scale.
+  // Normal in the frame of the tangent, which uses the first texture coordinates: R along u, G against v, B along the
+  // vertex normal, each −1 at 1 (and 0), 0 at 128, 1 at 255. R and G × normal_scale.
   TextureUse normal;
   float normal_scale = 1;
   // Ambient light × lerp(1, R, occlusion_strength).
@@ -122,9 +122,9 @@ struct MaterialMaps {
   float occlusion_strength = 1;
 };
 
-// The grain of a glossy material, as of brushed metal: along it, the lobe is wider.
+// The grain of a glossy material such as brushed metal: the lobe is wider along it.
 struct Grain {
-  // Along the tangent and the bitangent, the frame of MaterialMaps::normal; as long as the grain is strong, 0 to 1.
+  // Along the tangent and the bitangent, the frame of MaterialMaps::normal; its length is the strength, 0 to 1.
   Vec2 direction = {0, 0};
   // Numbers that turn and weaken it: R and G, −1 at 0 and 1 at 255, turn it to that direction; × B.
   TextureUse texture;
@@ -134,14 +134,14 @@ struct Grain {
 struct ClearCoat {
   float strength = 0;       // × R; 0: none
   float roughness = 0;      // × G
-  float roughness_low = 0;  // the least that this amounts to; lower values are moved to it, so that bounds hold
+  float roughness_low = 0;  // lower bound of the result; lower values are clamped to it, so that bounds hold
   TextureUse strength_texture, roughness_texture;
-  TextureUse normal;  // as MaterialMaps::normal, which the coat does not follow; none: the normal at the vertices
+  TextureUse normal;  // like MaterialMaps::normal, which the coat does not use; none: the normal at the vertices
   float normal_scale = 1;
 };
 
-// A unit vector in 127ths; zero: none. Handedness: above 0, the bitangent is normal × tangent, below 0 the opposite; 0:
-// as the first texture coordinates have it, against ∂P/∂v.
+// A unit vector in 127ths; zero: none. Handedness: above 0, the bitangent is normal × tangent, below 0 its opposite; 0:
+// by the first texture coordinates, against ∂P/∂v.
 struct PackedTangent {
   std::int8_t x = 0, y = 0, z = 0, handedness = 0;
 };
@@ -154,10 +154,10 @@ enum class LightKind : std::uint32_t { point, spot, directional };
 // Lights other than surfaces. Emissive materials are the area lights; the plan finds them.
 struct Light {
   LightKind kind = LightKind::point;
-  Vec3 position = {0, 0, 0};    // point, spot
-  Vec3 direction = {0, -1, 0};  // unit, the way the light travels; spot, directional
-  Vec3 intensity = {1, 1, 1};   // point, spot: radiant intensity; directional: irradiance on a surface that faces it
-  float range = 0;              // no light beyond this distance (KHR_lights_punctual); 0: no limit
+  Vec3 position = {0, 0, 0};           // point, spot
+  Vec3 direction = {0, -1, 0};         // unit, the way the light travels; spot, directional
+  Vec3 intensity = {1, 1, 1};          // point, spot: radiant intensity; directional: irradiance on a surface facing it
+  float range = 0;                     // no light beyond this distance (KHR_lights_punctual); 0: no limit
   float cos_inner = 1, cos_outer = 0;  // spot: full intensity within inner, none beyond outer
   std::uint32_t node = kNone;          // moves with this node: position and direction are in its space
 };
@@ -180,7 +180,7 @@ struct Node {
   std::uint32_t weight_begin = 0, weight_count = 0;  // morph weights in Scene::weights
 };
 
-// Those up to `visibility` are of a node. light_intensity sets a light's intensity, light_scale multiplies it;
+// Paths up to `visibility` belong to a node. light_intensity sets a light's intensity, light_scale multiplies it;
 // camera_size is the vertical field of view, or the vertical extent of an orthographic camera.
 enum class ChannelPath : std::uint8_t {
   translation,
@@ -198,7 +198,7 @@ constexpr int kChannelPathCount = 10;
 enum class Interpolation : std::uint8_t { step, linear, cubic };  // cubic: in-tangent, value, out-tangent for each key
 
 struct Channel {
-  std::uint32_t node;                  // or the light, camera or material, by `path`
+  std::uint32_t node;                  // or the light, camera or material, depending on `path`
   std::uint32_t key_begin, key_count;  // in Scene::key_times; seconds, strictly increasing
   std::uint32_t value_begin;           // in Scene::key_values; 1, 3, 4 or weight_count floats per key, × 3 if cubic
   ChannelPath path;
@@ -211,13 +211,13 @@ struct Animation {
   float duration;  // seconds; time wraps here
 };
 
-// An animation for people: its name and what it drives. Not terminated if full.
+// Readable description of an animation: its name and targets. Not terminated if full.
 struct AnimationLabel {
   char name[64], drives[188];
-  std::uint32_t combines;  // 1: it plays others of the scene together, and has no number of its own
+  std::uint32_t combines;  // 1: it plays others of the scene together and has no number
 };
 
-// Where the scene's origin lies in the model's own coordinates.
+// Position of the scene's origin in the model's own coordinates.
 struct SceneOrigin {
   double x, y, z;
 };
@@ -242,12 +242,12 @@ struct SkinWeight {
 struct MovingMesh {
   std::uint32_t vertex_begin, vertex_count;  // in Scene::positions (and normals)
   std::uint32_t rest_begin;                  // in Scene::rest_positions (and rest_normals)
-  std::uint32_t node;                        // ignored where there is a skin
+  std::uint32_t node;                        // ignored if there is a skin
   std::uint32_t skin = kNone;
   std::uint32_t skin_weight_begin = 0;  // in Scene::skin_weights, vertex_count of them
   std::uint32_t morph_begin = 0,
                 morph_count = 0;  // first delta in Scene::morph_positions; one target after another
-  Transform instance;             // between the node and the mesh (instancing); ignored where there is a skin
+  Transform instance;             // between the node and the mesh (instancing); ignored if there is a skin
 };
 
 struct SceneInfo {
@@ -263,13 +263,13 @@ struct SceneInfo {
   float auto_exposure = 0;           // 1: measure exposure before the first frame
 };
 
-// From where a scene without a camera is seen, and without lights is lit (plan/plan_scene.h). Measuring it takes some
-// looks at every triangle, so `bake` stores it.
+// View of a scene without a camera, and lighting of one without lights (plan/plan_scene.h). Measuring it takes several
+// passes over all triangles, so `bake` stores it.
 struct DefaultView {
-  std::uint32_t is_room = 0;  // 1: seen from inside, or through the side that is open
-  std::uint32_t side = 0;     // otherwise the side of four that it is seen from
+  std::uint32_t is_room = 0;  // 1: seen from inside, or through the open side
+  std::uint32_t side = 0;     // otherwise: which of four sides it is seen from
   Vec3 opening = {0, 0, 0};   // unit vector out through a room's open side; zero if it is closed
-  float inside_share = 1;     // of the way from the middle to the camera inside: the part without walls
+  float inside_share = 1;     // how far from the middle to the camera one is inside: the part without walls
 };
 constexpr std::uint32_t kDefaultViewSides = 4;
 
@@ -311,11 +311,11 @@ struct Scene {
   Array<const EnvironmentInfo> environment_info;  // one, or none
   Array<const std::uint32_t> environment_texels;  // of its maps
   Array<const Grain> grains;                      // one per material, or empty
-  // One per vertex, or empty: the tangent of the frame of maps; none: the triangle's own, see shade/normal_map.h.
+  // One per vertex, or empty: tangents of the frame of maps; none: the triangle's own, see shade/normal_map.h.
   Array<const PackedTangent> tangents;
-  Array<const Vec2> second_uvs;                  // one per vertex, or empty: coordinates of the textures of that set
+  Array<const Vec2> second_uvs;                  // one per vertex, or empty: second texture coordinates
   Array<const ClearCoat> clear_coats;            // one per material, or empty
-  Array<const DefaultView> default_view;         // one, or none: measured at the start where it is needed
+  Array<const DefaultView> default_view;         // one, or none: measured at the start if needed
   Array<const AnimationLabel> animation_labels;  // one per animation, or empty
   Array<const std::uint8_t> node_visible;        // one per node, or empty: all are, except as channels say
   Array<const SceneOrigin> origin;               // one, or none: 0

@@ -15,7 +15,7 @@ struct Rgb {
 
 int squared(int x) { return x * x; }
 
-// Endpoints are sought within this part of the range from either end: few outliers should not spoil the rest.
+// Endpoints are searched within this part of the range from either end: a few outliers should not spoil the rest.
 constexpr int kInset = 8, kInsetSteps = 4;
 
 // Fits the bytes between all pairs of endpoints on a small grid, and keeps the pair of the least squared error.
@@ -46,7 +46,7 @@ void encode_plane(const std::uint8_t* values, std::uint32_t* plane) {
     }
 }
 
-// The nearest colour of 5, 6 and 5 bits.
+// Rounds to the nearest colour of 5, 6 and 5 bits.
 std::uint32_t rounded_565(const Rgb& color) {
   auto nearest = [](int x, int most) {
     const int level = (x * most + 127) / 255;
@@ -60,7 +60,7 @@ struct ColorFit {
   int error;
 };
 
-// The nearest of the four colours for each texel.
+// Assigns the nearest of the four colours to each texel.
 ColorFit fit_of(const Rgb* texels, std::uint32_t first, std::uint32_t last) {
   Rgb palette[4];
   for (std::uint32_t index = 0; index < 4; ++index) {
@@ -90,7 +90,7 @@ bool keep_better(const ColorFit& other, ColorFit* best) {
   return true;
 }
 
-// The direction in which the texels vary most: power iteration on 16² times their covariance, kept below 2^12.
+// Direction of largest variation: power iteration on 16² times the texels' covariance, kept below 2^12.
 Rgb principal_axis(const Rgb* texels) {
   int sum[3] = {0, 0, 0};
   for (std::uint32_t i = 0; i < kTexels; ++i)
@@ -118,7 +118,7 @@ Rgb principal_axis(const Rgb* texels) {
   return {{static_cast<int>(axis[0]), static_cast<int>(axis[1]), static_cast<int>(axis[2])}};
 }
 
-// Endpoints that suit the fit's indices best: the least squares of both, rounded. False if the indices are all alike.
+// Least-squares endpoints for the fit's indices, rounded. Returns false if all indices are equal.
 bool solve_endpoints(const Rgb* texels, std::uint32_t indices, std::uint32_t* first, std::uint32_t* last) {
   int aa = 0, ab = 0, bb = 0, at[3] = {0, 0, 0}, bt[3] = {0, 0, 0};
   for (std::uint32_t i = 0; i < kTexels; ++i) {
@@ -156,7 +156,7 @@ void search_nearby(const Rgb* texels, ColorFit* best) {
   }
 }
 
-// Endpoints from the extremes along the principal axis, then least squares, then a search nearby.
+// Finds endpoints by the extremes along the principal axis, then least squares, then a local search.
 void encode_color(const Rgb* texels, std::uint32_t* block) {
   const Rgb axis = principal_axis(texels);
   std::uint32_t low = 0, high = 0;
@@ -178,7 +178,7 @@ void encode_color(const Rgb* texels, std::uint32_t* block) {
   block[1] = best.indices;
 }
 
-// Red and green of the normal made unit, so that blue follows from them.
+// Normalizes the normal, so that blue follows from red and green.
 void normalize_texel(std::uint8_t* rgba) {
   const int x = rgba[0] - 128, y = rgba[1] - 128, z = rgba[2] - 128, square = x * x + y * y + z * z;
   if (square == 0) return;

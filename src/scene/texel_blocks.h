@@ -1,5 +1,5 @@
 // Textures in blocks of 4 × 4 texels, for a fraction of the memory. Two kinds of blocks, 8 bytes each, made by our own
-// encoder and decoded in integers, so that every CPU reads the same texels:
+// encoder and decoded in integers, so that every CPU reads equal texels:
 //   - a colour block, as BC1 [Iourcha et al. 1999]: two colours of 5, 6 and 5 bits and, for each texel, 2 bits between;
 //   - a plane of one channel, as BC4: two bytes and, for each texel, 3 bits between.
 // Any bits are a valid block.
@@ -16,7 +16,7 @@ namespace pocketray {
 constexpr std::uint32_t kBlockSide = 4;
 constexpr std::uint32_t kBlockWordsMax = 6;
 
-// 32-bit words of a block, or of a texel of an exact texture.
+// 32-bit words per block, or per texel of an exact texture.
 constexpr std::uint32_t block_words(TexelFormat format) {
   switch (format) {
     case TexelFormat::exact:
@@ -34,12 +34,12 @@ constexpr std::uint32_t block_words(TexelFormat format) {
   return kBlockWordsMax;
 }
 
-// Blocks along a side; texels of an exact texture.
+// Blocks along a side; texels for an exact texture.
 constexpr std::uint32_t block_count(TexelFormat format, std::uint32_t side) {
   return format == TexelFormat::exact ? side : (side + kBlockSide - 1) / kBlockSide;
 }
 
-// Words of the first `count` levels: where level `count` begins.
+// Words of the first `count` levels, which is the offset of level `count`.
 constexpr std::uint32_t level_words(TexelFormat format, std::uint32_t width, std::uint32_t height,
                                     std::uint32_t count) {
   std::uint32_t sum = 0;
@@ -49,7 +49,7 @@ constexpr std::uint32_t level_words(TexelFormat format, std::uint32_t width, std
   return sum;
 }
 
-// The channel of a texel in a plane: the bytes low and high, or one of the six values between them.
+// Channel of a texel in a plane: the bytes low and high, or one of the six values between them.
 inline std::uint32_t plane_value(const std::uint32_t* plane, std::uint32_t texel) {
   const std::uint32_t low = plane[0] & 0xFF, high = plane[0] >> 8 & 0xFF;
   const std::uint64_t indices = (std::uint64_t(plane[1]) << 32 | plane[0]) >> 16;
@@ -57,13 +57,13 @@ inline std::uint32_t plane_value(const std::uint32_t* plane, std::uint32_t texel
   return (low * (7 - index) + high * index + 3) / 7;
 }
 
-// A colour of 5, 6 and 5 bits as R, G, B from the lowest byte.
+// Expands a colour of 5, 6 and 5 bits to R, G, B from the lowest byte.
 constexpr std::uint32_t expanded_565(std::uint32_t c) {
   const std::uint32_t r = c >> 11 & 31, g = c >> 5 & 63, b = c & 31;
   return (r << 3 | r >> 2) | (g << 2 | g >> 4) << 8 | (b << 3 | b >> 2) << 16;
 }
 
-// R, G, B of a texel in a colour block, from the lowest byte: a colour, or a mix with two thirds of it.
+// R, G, B of a texel in a colour block, from the lowest byte: one of the colours, or a mix with two thirds of it.
 inline std::uint32_t color_value(const std::uint32_t* block, std::uint32_t texel) {
   const std::uint32_t first = expanded_565(block[0] & 0xFFFF), last = expanded_565(block[0] >> 16);
   const std::uint32_t index = block[1] >> 2 * texel & 3;
@@ -101,7 +101,7 @@ inline std::uint32_t block_texel(TexelFormat format, const std::uint32_t* block,
 }
 
 // Writes the blocks of a level of any format but exact: block_count(width) · block_count(height) · block_words() words.
-// Deterministic: integers only, but for the length of normals.
+// Deterministic: integers only, except for the length of normals.
 void encode_blocks(TexelFormat format, const std::uint32_t* texels, std::uint32_t width, std::uint32_t height,
                    std::uint32_t* blocks);
 

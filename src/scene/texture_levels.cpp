@@ -10,7 +10,7 @@ namespace {
 
 // Sums of a texel: its channels × its weight, and the weight.
 constexpr std::size_t kSums = 5;
-// Of texels with alpha 0, so that their colour counts where nothing else is there.
+// Weight of texels with alpha 0, so that their colour counts where there is nothing else.
 constexpr float kLeastWeight = 0x1p-16f;
 
 void read_texel(std::uint32_t texel, TexelKind kind, float* sums) {
@@ -36,7 +36,7 @@ std::uint32_t written_texel(const float* sums, TexelKind kind) {
   return texel;
 }
 
-// The texels of a side that texel `i` of its half covers, and how much of each: one, two, or three of an odd side.
+// Weights of the texels of a side that texel `i` of its half covers: one, two, or three for an odd side.
 struct Taps {
   std::uint32_t begin, count;
   float weight[3];
@@ -50,7 +50,7 @@ Taps taps_of(std::uint32_t side, std::uint32_t i) {
   return {2 * i, 3, {(half - at) / whole, half / whole, (at + 1) / whole}};
 }
 
-// Level 1 of `from` or of `sums`, whichever is not null. It may overwrite `sums`: a texel is written no further on than
+// Makes level 1 of `from` or of `sums`, whichever is not null. It may overwrite `sums`: a texel is never written beyond
 // those that later ones read.
 void halve(const std::uint32_t* from, const float* sums, std::uint32_t width, std::uint32_t height, TexelKind kind,
            float* to) {

@@ -1,4 +1,4 @@
-// Static content: geometry, materials, textures, lights, cameras.
+// Validates static content: geometry, materials, textures, lights, cameras.
 #include <cstring>
 
 #include "base/check.h"

@@ -22,14 +22,14 @@ inline bool is_coordinate(const Transform& t) {
   return true;
 }
 
-// Unit to within 1 %, as normals and directions must be. NaN fails.
+// True if unit to within 1 %, as normals and directions must be. NaN fails.
 inline bool is_unit(const Vec3& n) {
   if (!is_coordinate(n)) return false;
   float square = dot(n, n);
   return square >= 0.98f && square <= 1.02f;
 }
 
-// Whether [begin, begin + count) lies in [0, total).
+// True if [begin, begin + count) lies in [0, total).
 inline bool is_range(std::uint64_t begin, std::uint64_t count, std::uint64_t total) {
   return begin <= total && count <= total - begin;  // no overflow: count may be a product of factors below 2^32
 }

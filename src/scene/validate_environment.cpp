@@ -1,4 +1,4 @@
-// The environment: sizes first, then every number.
+// Validates the environment: sizes first, then every number.
 #include "scene/validate_checks.h"
 
 namespace pocketray {

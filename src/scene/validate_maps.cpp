@@ -1,4 +1,4 @@
-// Textures of materials.
+// Validates textures of materials.
 #include "base/check.h"
 #include "scene/metallic_roughness.h"
 #include "scene/validate_checks.h"

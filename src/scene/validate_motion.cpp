@@ -1,6 +1,6 @@
-// Moving content: nodes, animations, skins, moving meshes. Every pass is linear in the size of the file: ranges that
-// several elements may share are bounded by kChannelKeyCountMax and kMorphTargetCountMax, and moving meshes may not
-// overlap.
+// Validates moving content: nodes, animations, skins, moving meshes. Every pass is linear in the size of the file:
+// ranges that several elements may share are bounded by kChannelKeyCountMax and kMorphTargetCountMax, and moving meshes
+// may not overlap.
 #include "base/limit_list.h"
 #include "scene/channel.h"
 #include "scene/validate_checks.h"
@@ -32,7 +32,7 @@ Status validate_node(const Scene& scene, std::uint32_t index) {
   return success();
 }
 
-// What a channel's index counts.
+// Numbers of elements that a channel's index may refer to.
 struct Targets {
   const char* name;
   std::uint32_t count;

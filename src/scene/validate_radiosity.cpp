@@ -1,4 +1,4 @@
-// A stored radiosity solution.
+// Validates a stored radiosity solution.
 #include "base/check.h"
 #include "scene/baked.h"
 #include "scene/validate_checks.h"

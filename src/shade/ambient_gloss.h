@@ -1,14 +1,14 @@
-// Light from the surroundings, added to the light that surfaces emit of themselves: on glossy lobes where it comes
-// evenly from everywhere (Effect::ambient_gloss), on diffuse and glossy ones where it comes from an environment.
+// Light that surfaces reflect from the surroundings, added to their emission: on glossy lobes from an even environment
+// (Effect::ambient_gloss), on diffuse and glossy lobes from an environment map or sky.
 #pragma once
 #include "shade/frame_data.h"
 
 namespace pocketray {
 
-// Sets the frame's functions for the plan; null: the surroundings light nothing, or only by the ambient term.
+// Sets the frame's functions for light from the surroundings. They stay null if the ambient term is all there is.
 void find_surroundings(FrameData* frame);
 
-// Puts the frame's functions in front of its surface functions, so that frames without one do not even test for it.
+// Wraps the surface functions in these, so that frames without surroundings do not even test for them.
 void add_surroundings(FrameData* frame);
 
 }  // namespace pocketray

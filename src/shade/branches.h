@@ -1,8 +1,8 @@
-// Where paths branch, as in glass, each sample's tree of rays is kept small while what is left out of it stays bounded.
+// Bounds the tree of rays of a sample whose path branches, as in glass, and the error of pruning it.
 //
-// What a sample may lose grows with the light that it has for certain: display levels of bright pixels are wider. The
-// stronger branch comes first, so that this light is known early. A ray is left out if the most that it could add is no
-// more than a share of that, and than what is left of it.
+// The error allowed grows with the light already certain, because display levels of bright pixels are wider. The
+// stronger branch is traced first, so that this light is known early. A ray is pruned if its upper bound is at most a
+// share of the allowed error and at most what remains of it.
 #pragma once
 #include <algorithm>
 
@@ -10,20 +10,20 @@
 
 namespace pocketray {
 
-// Linear radiance of exposed white 1 above which display levels widen, and how fast: with w(L) the width of the level
-// at L relative to that at 0, w(L) ≥ 1 + kLevelSlope · (L − kDarkLevels) up to 1. Derived: beyond its linear part,
-// sRGB's width 2.4 / 1.055 · L^(1.4 / 2.4) is concave, hence above its chord from there to w(1) = 29.39.
+// Display levels widen above kDarkLevels (linear, exposed white is 1), by at least kLevelSlope: with w(L) the width of
+// the level at L relative to L = 0, w(L) ≥ 1 + kLevelSlope · (L − kDarkLevels) up to 1. Derived: beyond its linear
+// part, sRGB's width 2.4 / 1.055 · L^(1.4 / 2.4) is concave, hence above its chord from there to w(1) = 29.39.
 constexpr float kDarkLevels = 0.0031309f;
 constexpr float kLevelSlope = 28.4f;
 
-// The share of what a sample may lose that one ray may take: in deep trees of rays, what many strong ones take would be
-// missing for the faint ones, which multiply. Measured for five hollow spheres: the fewest rays at depths of 8 to 16.
+// Share of a sample's allowed error that one ray may use: in deep trees, a few strong rays would otherwise use up what
+// the many faint ones need. Measured for five hollow spheres: the fewest rays at depths of 8 to 16.
 inline float skip_share(std::uint32_t ray_depth) {
   const std::uint32_t beyond = ray_depth > 8 ? std::min(ray_depth - 8, 6u) : 0;
   return 1 / static_cast<float>(1u << 2 * beyond);
 }
 
-// Begins the tracing of a sample that may lose Tracer::budget if it is dark; 0: nothing, however bright it is.
+// Starts a sample whose allowed error is Tracer::budget if it is dark; with 0, no error is allowed at any brightness.
 inline void begin_branching(Tracer* tracer) {
   const FrameData& frame = *tracer->frame;
   Branching& b = tracer->branching;
@@ -35,7 +35,7 @@ inline void begin_branching(Tracer* tracer) {
   tracer->skip_max = b.share * b.allowed;
 }
 
-// Light that the sample has for certain.
+// Adds light that is certain to reach the sample.
 inline void add_certain(Tracer* tracer, const Vec3& light) {
   Branching& b = tracer->branching;
   const float darkest = std::min(light.x, std::min(light.y, light.z));

@@ -5,15 +5,15 @@
 
 namespace pocketray {
 
-// Fails if the eye is at the target or the field of view or extent is non-finite or impossible. A view along `up` gets
-// another up vector.
+// Fails if the eye is at the target, or if the field of view or extent is non-finite or impossible. If the camera looks
+// along `up`, another up vector is used.
 Status make_camera_rays(const Camera& camera, std::uint32_t width, std::uint32_t height, CameraRays* rays);
 
-// What a column x and a row y of the image, in pixels, add to the direction of a perspective ray.
+// Contribution of column x and row y, in pixels, to the direction of a perspective ray.
 inline Vec3 column_part(const CameraRays& c, float x) { return c.forward + c.right * (2 * x / c.width - 1); }
 inline Vec3 row_part(const CameraRays& c, float y) { return c.up * (1 - 2 * y / c.height); }
 
-// The ray through the image point (x, y) in pixels. Its direction is unit, so t is a distance.
+// Ray through the image point (x, y), in pixels. Its direction is a unit vector, so t is a distance.
 inline Ray camera_ray(const CameraRays& c, float x, float y) {
   Ray ray;
   ray.t_max = __builtin_inff();
@@ -27,7 +27,7 @@ inline Ray camera_ray(const CameraRays& c, float x, float y) {
   return ray;
 }
 
-// Where the camera sees a point, in pixels; false: behind it, or nowhere.
+// Projects a point to pixel coordinates. Returns false if it is behind the camera or projects nowhere.
 bool place_in_picture(const CameraRays& camera, const Vec3& point, Vec2* place);
 
 }  // namespace pocketray

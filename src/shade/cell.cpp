@@ -10,7 +10,7 @@ namespace pocketray {
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-// Chosen: the light of a corner on a much darker texel tells little of a bright one.
+// Chosen: light on a much darker texel says little about light on a bright one.
 constexpr float kRecolorMax = 4;
 
 // The range of several radiances.
@@ -20,8 +20,8 @@ struct Range {
   void add(const Vec3& radiance) { low = min(low, radiance), high = max(high, radiance); }
 };
 
-// Whether the Michelson contrast of what the display shows, its own reflection included, stays below `contrast`. False
-// for radiances that are not finite.
+// Returns whether the Michelson contrast as displayed, including the display's own reflection, is below `contrast`.
+// False for non-finite radiances.
 bool is_low_contrast(const Range& range, const Selection& selection, float contrast) {
   for (int c = 0; c < 3; ++c) {
     const float high = std::min(range.high[c], selection.white), low = std::min(range.low[c], selection.white);
@@ -30,8 +30,8 @@ bool is_low_contrast(const Range& range, const Selection& selection, float contr
   return true;
 }
 
-// Whether normals are so close that light changes by no more than the contrast: by about the angle between them in
-// light that falls at 45 degrees.
+// Returns whether two normals are so close that light from 45 degrees changes by no more than the contrast, which is
+// about the angle between them.
 bool is_same_side(float contrast, const Vec3& a, const Vec3& b) {
   const float angle = contrast;
   return dot(a, b) > 1 - angle * angle * 0.5f;
@@ -52,14 +52,14 @@ bool has_texture(const Scene& scene, const Material& m) {
   return false;
 }
 
-// Whether a texture turns the grain of a glossy lobe: its light changes from texel to texel.
+// Returns whether a texture turns the grain of a glossy lobe, so that its light changes from texel to texel.
 bool has_grain_texture(const Scene& scene, const Material& m) {
   if (scene.grains.empty()) return false;
   const auto index = static_cast<std::uint32_t>(&m - scene.materials.data);
   return has_grain(scene, index) && scene.grains[index].texture.texture != kNone;
 }
 
-// The corner's light on the surface's diffuse colour. False if it is too dark there.
+// Rescales the corner's light to the surface's diffuse colour. Returns false if the corner is too dark for that.
 bool recolor(const CellCorner& corner, const Surface& s, Vec3* radiance) {
   Vec3 light = corner.radiance - corner.glow;
   for (int c = 0; c < 3; ++c) {
@@ -115,7 +115,7 @@ bool predict(const FrameData& frame, const PixelCell& cell, float contrast, cons
     sum_weight += weight[c];
     ++count;
   }
-  // The fewer, the more they must agree.
+  // Fewer corners must agree more closely.
   if (count < 2 || !(sum_weight > 0)) return false;
   if (!is_low_contrast(range, frame.selection, 0.25f * static_cast<float>(count) * contrast)) return false;
   *radiance = sum * (1 / sum_weight);

@@ -1,23 +1,23 @@
-// The clear coat of a surface (Effect::clear_coat); brdf/clear_coat.h has its optics. It takes its share of all that
-// leaves the base: Surface::diffuse and Surface::glow hold what is left. Light reaches the coat where it reaches the
-// base, above the horizon of the base's normal.
+// The clear coat of a surface (Effect::clear_coat); brdf/clear_coat.h has its optics. It attenuates all light leaving
+// the base: Surface::diffuse and Surface::glow hold the attenuated values. Light reaches the coat wherever it reaches
+// the base, above the horizon of the base's normal.
 #pragma once
 #include "brdf/clear_coat.h"
 #include "shade/surface.h"
 
 namespace pocketray {
 
-// Sets Surface::coat, for the normal at the vertices. All else of the surface but its glow is known.
+// Sets Surface::coat from the normal at the vertices. Every other field of the surface but glow must be set.
 void find_coat(const FrameData& frame, const Ray& ray, const Vec3& normal, Surface* s);
 
-// Puts the coat over the glow and the diffuse lobe, and adds what it reflects of the surroundings, of which `open` is
-// not occluded.
+// Attenuates the glow and the diffuse lobe by the coat, and adds the surroundings that the coat reflects; `open` is
+// their unoccluded fraction.
 void add_coat(const FrameData& frame, const Ray& ray, float open, Surface* s);
 
-// The coat's lobe × the light's cosine at the coat; 0 without a lobe.
+// Value of the coat's lobe times the cosine of the light at the coat; 0 without a lobe.
 float coat_reflection(const Surface& s, const Vec3& to_viewer, const Vec3& to_light);
 
-// The value of the base's lobes under the coat; `diffuse` is that of the diffuse lobe under it.
+// Value of the base's lobes under the coat; `diffuse` is the value of the diffuse lobe under it.
 inline Vec3 value_under_coat(const BrdfInfo& lobe, const Material& m, const Vec3& specular, const Vec3& diffuse,
                              const Surface& s, const Vec3& to_viewer, const Vec3& to_light) {
   const float passes = s.coat.passes;
@@ -25,7 +25,7 @@ inline Vec3 value_under_coat(const BrdfInfo& lobe, const Material& m, const Vec3
   return lobe.value(m, specular, diffuse * (1 / passes), s, to_viewer, to_light) * passes;
 }
 
-// Whether lights shine in the coat.
+// Returns whether the coat reflects lights.
 inline bool shines_by_coat(const FrameData& frame, const Surface& s) {
   return has(frame.mask, Effect::clear_coat) && s.coat.lobe > 0;
 }

@@ -13,24 +13,24 @@
 namespace pocketray {
 namespace {
 
-// Of more lights, a place in the pattern looks at every n-th.
+// With more lights than this, each place in the pattern considers every n-th one.
 constexpr std::uint32_t kLightsOfPlace = 16;
 
 // Light that arrives at a point if nothing is in the way.
 struct Candidate {
   Vec3 irradiance;
   Ray ray;
-  const LightPoint* emitter;  // whose own flat piece casts no shadow; null: none
+  const LightPoint* emitter;  // light whose own flat piece casts no shadow; null: none
   std::uint16_t index;    // of the light
 };
 
-// One of some candidates, chosen by what they contribute, and their sum.
+// A candidate sampled in proportion to its contribution, and the sum of all contributions.
 struct Choice {
-  float left;  // where in the sum it lies, in [0, 1)
+  float left;  // random number in [0, 1), rescaled after every candidate
   float most = 0, sum = 0;
   Candidate chosen = {};
 
-  // Keeps the new one with a probability of its share of the sum so far, and what is left of the number.
+  // Keeps the new candidate with probability share = own / sum, and rescales the random number for reuse.
   void add(const Candidate& candidate) {
     const float own = max_component(candidate.irradiance);
     if (!(own > 0)) return;
@@ -46,13 +46,13 @@ struct Choice {
   }
 };
 
-// Fractions of multiples of 1 / ρ and 1 / ρ², ρ³ = ρ + 1: evenly spread together [Roberts 2018].
+// Fractions of the multiples of 1 / ρ and 1 / ρ², ρ³ = ρ + 1: together an even 2D sequence [Roberts 2018].
 constexpr std::uint32_t kStepOfLights = 3242174889u, kStepOfVirtualLights = 2447445414u;
 float spread_number(std::uint32_t index, std::uint32_t step) {
   return static_cast<float>((index + 1) * step >> 8) * 0x1p-24f;
 }
 
-// On the basis of Duff et al. [2017, listing 3].
+// Rotates `local` to the basis about n of Duff et al. [2017, listing 3].
 Vec3 about_normal(const Vec3& n, const Vec3& local) {
   const float sign = std::copysign(1.0f, n.z), a = -1 / (sign + n.z), b = n.x * n.y * a;
   const Vec3 tangent = {1 + sign * n.x * n.x * a, sign * b, -sign * n.x}, bitangent = {b, sign + n.y * n.y * a, -n.y};
@@ -67,7 +67,7 @@ struct CompensationRays {
   std::uint32_t place;  // in the pattern
   CompensationPath* path;
 
-  // Of all that the candidates stand for: nothing, if the chosen one is blocked.
+  // Estimates the light of all candidates from the chosen one: zero if it is blocked.
   Vec3 arriving(const Choice& choice, float scale, std::uint16_t* light) const {
     if (!(choice.sum > 0)) return {0, 0, 0};
     if (has(frame.mask, Effect::shadow)) {
@@ -87,7 +87,7 @@ struct CompensationRays {
     Choice choice = {spread_number(place, kStepOfLights)};
     for (int r = 0; r < frame.light_run_count; ++r) {
       const LightRun& run = frame.light_runs[r];
-      // The first of the run that is `place` modulo the stride.
+      // The run's first index that is `place` modulo the stride.
       std::uint32_t i = run.begin + (place + stride - run.begin % stride) % stride;
       for (; i < run.end; i += stride) {
         const LightPoint& light = frame.lights[i];
@@ -106,7 +106,7 @@ struct CompensationRays {
   Vec3 from_virtual_lights(const Surface& s) const {
     const Vec3 origin = safe_origin(s, 1);
     Choice choice = {spread_number(place, kStepOfVirtualLights)};
-    // Every sixteenth in spatial order, which represents all of them better than the lights of one place do.
+    // Every sixteenth in spatial order represents all of them better than the lights of one place do.
     for (std::uint32_t i = place; i < lights.count; i += kPatternPixels) {
       Candidate candidate = {{0, 0, 0}, {}, nullptr, static_cast<std::uint16_t>(i)};
       if (!arrives(lights.light[i], lights.geometry_max, s, &candidate.irradiance)) continue;
@@ -116,7 +116,7 @@ struct CompensationRays {
     return arriving(choice, static_cast<float>(kPatternPixels), &path->virtual_light);
   }
 
-  // π times the light from a direction, by the share of it that the virtual lights lack.
+  // π times the light from a direction, weighted by the share that the virtual lights lack.
   Vec3 from(const Surface& receiver, const Vec3& direction) const {
     const float cos_receiver = dot(receiver.normal, direction);
     if (!(cos_receiver > 0) || is_below(receiver, direction)) return {0, 0, 0};
@@ -153,11 +153,11 @@ CompensationPath load(const KeptPath& kept) {
 
 Vec3 compensation_direction(std::uint32_t place_in_pattern) {
   CHECK_LT(place_in_pattern, kPatternPixels);
-  // (0, 2)-sequence [Sobol 1967]: the bits mirrored, and by Pascal's triangle.
+  // (0, 2)-sequence [Sobol 1967]: reversed bits, and bits transformed by Pascal's triangle.
   const std::uint32_t b0 = place_in_pattern & 1, b1 = place_in_pattern >> 1 & 1, b2 = place_in_pattern >> 2 & 1,
                       b3 = place_in_pattern >> 3;
   const std::uint32_t ring = b0 * 8 + b1 * 4 + b2 * 2 + b3, sector = b0 * 8 ^ b1 * 12 ^ b2 * 10 ^ b3 * 15;
-  constexpr float kCosine[] = {0.98078528f, 0.83146961f, 0.55557023f, 0.19509032f};  // of odd multiples of π / 16
+  constexpr float kCosine[] = {0.98078528f, 0.83146961f, 0.55557023f, 0.19509032f};  // odd multiples of π / 16
   float x = kCosine[sector & 3], y = kCosine[3 - (sector & 3)];
   if (sector & 4) x = -std::exchange(y, x);
   if (sector & 8) x = -x, y = -y;

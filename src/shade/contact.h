@@ -12,15 +12,15 @@ struct Face {
 };
 
 struct Contact {
-  Face face[kMediumDepthMax];  // the first hit first; one per material and side, any excess is dropped
+  Face face[kMediumDepthMax];  // first hit first; one per material and side, excess faces are dropped
   std::uint32_t count;
 };
 
-// The faces between the safe origins on both sides of `s`, the surface at `hit`. `filter` may be null.
+// Gathers the faces between the safe origins on both sides of `s`, the surface at `hit`. `filter` may be null.
 void gather_contact(const FrameData& frame, const Surface& s, const Hit& hit, const HitFilter* filter, Contact* contact,
                     TraceStats* stats);
 
-// Whether a ray may pass a material, given the effects of the mask.
+// Returns whether a ray may pass through a material, given the effects of the mask.
 inline bool transmits(const Material& m, EffectMask mask) {
   return has(mask, Effect::refraction) && !is_zero(m.transmission);
 }

@@ -10,22 +10,22 @@
 
 namespace pocketray {
 
-// A surface that receives light, and the viewer of what leaves it.
+// A surface that receives light, and the direction to its viewer.
 struct LitSurface {
   const Surface& surface;
-  const Material& material;  // with the lobes there
+  const Material& material;  // with the lobes evaluated at the point
   const Vec3& to_viewer;
   const Vec3& weight;  // the throughput of the path so far
   Vec3 diffuse;        // value of the diffuse lobe
   bool at_first_hit;
 };
 
-// What direct light depends on.
+// The effects on which direct light depends.
 constexpr EffectMask kDirectEffects =
     bit(Effect::shadow) | bit(Effect::specular) | bit(Effect::metallic_roughness) | kPassageEffects;
 static_assert((kPassageEffects & bit(Effect::clear_coat)) != 0, "coats change lobes");
 
-// The value of all lobes for light from a direction.
+// Sum of all lobes for light from a direction.
 template <EffectMask mask>
 inline Vec3 lobe_value(const FrameData& frame, const LitSurface& to, const Vec3& direction) {
   const Material& m = to.material;
@@ -43,7 +43,7 @@ inline Vec3 lobe_value(const FrameData& frame, const LitSurface& to, const Vec3&
   return to.diffuse;
 }
 
-// The light that leaves a surface for light of that irradiance on a surface that faces it.
+// Reflected radiance for light of that irradiance (measured on a surface facing it).
 template <EffectMask mask>
 inline Vec3 reflected_light(const FrameData& frame, const LitSurface& to, const Vec3& direction, const Vec3& irradiance,
                             float cosine) {
@@ -53,7 +53,7 @@ inline Vec3 reflected_light(const FrameData& frame, const LitSurface& to, const 
   return light_out;
 }
 
-// Adds the light of frame.lights[i], one of the run's.
+// Adds the light of frame.lights[i], which belongs to the run.
 template <EffectMask mask>
 [[gnu::always_inline]] inline void add_light_point(Tracer* tracer, const LitSurface& to, const LightRun& run,
                                                    std::uint32_t i, Vec3* sum) {
@@ -80,10 +80,10 @@ template <EffectMask mask>
   *sum += light_out;
 }
 
-// Irradiances whose sum is smaller have no finite inverse.
+// A smaller sum of irradiances has no finite inverse.
 constexpr float kShareMin = std::numeric_limits<float>::min();
 
-// The light of a lamp's points, weighted so that without shadows their sum is that of its polygon.
+// Light of a lamp's points, scaled so that without shadows it sums to the polygon's light.
 template <EffectMask mask>
 [[gnu::noinline]] Vec3 weighted_points(Tracer* tracer, const LitSurface& to, const LightRun& run, std::uint32_t first,
                                        const PolygonView& view, const Vec3& irradiance) {
@@ -118,8 +118,8 @@ template <EffectMask mask>
   return view.highest > 3 * highest ? seen * (3 * highest / view.highest) : seen;
 }
 
-// The share of a whole lamp's light that arrives at a matte surface: of the light points that differ in visibility,
-// each by what it contributes.
+// Visible fraction of a whole lamp at a matte surface: the visibility of its light points, weighted by what each
+// contributes.
 template <EffectMask mask>
 [[gnu::noinline]] Vec3 polygon_visibility(Tracer* tracer, const LitSurface& to, const LightRun& run,
                                           std::uint32_t first, const TilePolygon* tile) {
@@ -158,7 +158,7 @@ template <EffectMask mask>
   return all >= kShareMin ? seen * (1 / all) : Vec3{0, 0, 0};
 }
 
-// The form of the material's glossy lobe there, if a polygon's share of it has one.
+// The linear form of the material's glossy lobe, from which a polygon's share follows; null if it has none.
 template <EffectMask mask>
 inline const LinearForm* linear_form(const FrameData& frame, const LitSurface& to) {
   if constexpr (!has(mask, Effect::specular)) return nullptr;
@@ -169,11 +169,11 @@ inline const LinearForm* linear_form(const FrameData& frame, const LitSurface& t
   return kBrdfList[to.material.brdf]->linear;
 }
 
-// Of a lamp's points, weighted by their share of the highlight and of the matte light.
+// Sums over a lamp's points, weighted by their share of the highlight and of the matte light.
 struct LobePoints {
   Vec3 seen_gloss = {0, 0, 0}, seen_rest = {0, 0, 0}, common = {1, 1, 1};
   float all_gloss = 0, all = 0, highest = 0;
-  bool any = false, alike = true;  // whether all points are as visible as the first
+  bool any = false, alike = true;  // alike: all points are equally visible
 };
 
 template <EffectMask mask>
@@ -212,9 +212,9 @@ template <EffectMask mask>
   return p;
 }
 
-// Adds the light of a lamp at a glossy surface: the closed forms of the sharp part and of the rest, each times the
-// share that arrives, of points weighted by what they add to it. For the sharp part, by a distribution with long tails:
-// where the lobe hardly sees any of the points, the nearest counts. False: the lobe cannot be divided.
+// Adds a lamp's light at a glossy surface: the closed forms of the sharp part and of the rest, each times the
+// visibility of the lamp's points, weighted by their contribution. The sharp part's weights have long tails: where the
+// lobe hardly covers any of the points, the nearest one counts. Returns false if the lobe has no such division.
 template <EffectMask mask>
 [[gnu::noinline]] bool add_glossy_lamp(Tracer* tracer, const LitSurface& to, const LightRun& run, std::uint32_t first,
                                        const PolygonView& view, const Vec3& irradiance, const TilePolygon* tile,
@@ -264,7 +264,7 @@ template <EffectMask mask>
   return true;
 }
 
-// The sum and the light of a run's lamps, of which some are polygons.
+// Adds the lamps of a run, some of which are polygons, to `sum`.
 template <EffectMask mask>
 [[gnu::noinline]] Vec3 add_area_lights(Tracer* tracer, const LitSurface& to, const LightRun& run, Vec3 sum) {
   const FrameData& frame = *tracer->frame;
@@ -308,8 +308,8 @@ template <EffectMask mask>
   return sum;
 }
 
-// Radiance towards the viewer from light that arrives straight from the lights; `m` has the lobes there. `weight` is
-// the throughput of the path so far.
+// Radiance towards the viewer from light that arrives directly from the lights; `m` has the lobes at the point.
+// `weight` is the throughput of the path so far.
 template <EffectMask mask>
 Vec3 direct_light(Tracer* tracer, const Surface& s, const Material& m, const Vec3& to_viewer, const Vec3& weight) {
   const FrameData& frame = *tracer->frame;
@@ -319,7 +319,7 @@ Vec3 direct_light(Tracer* tracer, const Surface& s, const Material& m, const Vec
   for (int r = 0; r < frame.light_run_count; ++r) {
     const LightRun& run = frame.light_runs[r];
     if (run.polygons) {
-      const LitSurface copy = to;  // what is passed on is kept in memory
+      const LitSurface copy = to;  // arguments passed by reference must live in memory
       sum = add_area_lights<mask & kDirectEffects>(tracer, copy, run, sum);
       continue;
     }

@@ -1,6 +1,6 @@
-// The environment's diffuse light at first hits, with shadows: the irradiance from all directions, exact where nothing
-// is in the way, by the share of the distant lights that arrives. A ratio has no noise where nothing or everything is
-// hidden [Heitz et al. 2018, "Combining analytic direct illumination and stochastic shadows"].
+// The environment's diffuse light at first hits, with shadows: the exact unshadowed irradiance, times the visible share
+// of the distant lights. Such a ratio has no noise where nothing or everything is hidden [Heitz et al. 2018, "Combining
+// analytic direct illumination and stochastic shadows"].
 #include "effect/effect_probe.h"
 #include "indirect/environment.h"
 #include "shade/interleaved_rays.h"
@@ -9,7 +9,7 @@ namespace pocketray {
 namespace {
 
 struct DistantSource {
-  static constexpr float kFaint = 0;  // behind a body overhead, light along the ground is not faint
+  static constexpr float kFaint = 0;  // under a body overhead, light from near the horizon is not faint
   static constexpr float tolerance = 0;
   const EnvironmentLights& lights;
   std::uint32_t count;

@@ -1,5 +1,5 @@
 // Point sets that represent a square: a pixel, or the area of a light. They are evenly spread, and their mean is the
-// centre whatever their number, so that neither pictures nor lights shift with it.
+// centre for every count, so that neither pictures nor lights shift with the count.
 #pragma once
 #include <cstdint>
 
@@ -7,10 +7,10 @@
 
 namespace pocketray {
 
-// Point `index` of `count`, at most kSampleCountMax, in the unit square; a set made for edges. Each of `count` columns
-// and each of as many rows has one point in its middle (n-rooks [Shirley 1991, "Discrepancy as a Quality Measure for
-// Sample Distributions", sec. 4]): horizontal and vertical edges, the most common and most visible ones, get as many
-// grey levels as there are points. Of all such sets it is one with the least error for edges in any direction.
+// Point `index` of `count` (at most kSampleCountMax) in the unit square, optimized for edges. Each of `count` columns
+// and rows has one point in its middle (n-rooks [Shirley 1991, "Discrepancy as a Quality Measure for Sample
+// Distributions", sec. 4]): horizontal and vertical edges, the most common and most visible ones, get as many grey
+// levels as there are points. Among all such sets, it has the least error for edges in any direction.
 Vec2 rook_point(std::uint32_t index, std::uint32_t count);
 
 // A cell of the unit square: its horizontal extent and the middle of its height.

@@ -8,7 +8,7 @@
 namespace pocketray {
 namespace {
 
-// Whether the point lies in a hole of an alpha-masked surface.
+// Returns whether the point lies in a hole of an alpha-masked surface.
 bool is_hole(const FrameData& frame, const Material& m, std::uint32_t triangle, float u, float v) {
   return hit_alpha<Effect::alpha_mask>(frame, m, triangle, u, v) < m.alpha_cutoff;
 }

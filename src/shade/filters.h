@@ -7,11 +7,11 @@ namespace pocketray {
 // Context of the shadow filters.
 struct ShadowContext {
   const FrameData* frame;
-  const LightPoint* emitter;  // the point of an area light whose own flat piece casts no shadow; null: none
+  const LightPoint* emitter;  // point of an area light whose own flat piece casts no shadow; null: none
 };
 
-// Sets the frame's filters for its mask: visible (holes are cut out), opaque (blocks light completely) and clear (lets
-// some light through). The frame must not move afterwards.
+// Sets the frame's filters for its mask: visible (holes are cut out), opaque (accepts what blocks all light) and clear
+// (accepts what transmits some). The frame must not move afterwards.
 void make_filters(FrameData* frame);
 
 }  // namespace pocketray

@@ -14,7 +14,7 @@
 
 namespace pocketray {
 
-// The cone of a camera's pixels, each divided among its samples.
+// Cone of a camera's pixel, divided among its samples.
 inline PixelCone pixel_cone(const CameraRays& camera, std::uint32_t sample_count) {
   CHECK(sample_count >= 1 && sample_count <= kSampleCountMax);
   CHECK(camera.height >= 1);
@@ -22,10 +22,10 @@ inline PixelCone pixel_cone(const CameraRays& camera, std::uint32_t sample_count
   return camera.orthographic ? PixelCone{side, 0} : PixelCone{0, side};
 }
 
-// The area that the cone covers in texture coordinates, where a ray of unit direction meets the triangle after the
-// distance t from the eye: the cone's cross-section divided by the cosine, times the triangle's area there per area in
-// the scene. `perpendicular` is the cross product of the triangle's edges, `normal` the same of length 1. The largest
-// float where the triangle is seen edge-on. Always finite: nothing here is an invalid operation, whatever the scene.
+// Area that the cone covers in texture coordinates, where a ray of unit direction meets the triangle at the distance t
+// from the eye: the cone's cross-section divided by the cosine, times the ratio of the triangle's area in the texture
+// to that in the scene. `perpendicular` is the cross product of the triangle's edges, `normal` its unit vector. The
+// largest float where the triangle is seen edge-on. Always finite, without invalid operations, for any scene.
 inline float footprint(const PixelCone& cone, float t, const Vec3& direction, const Vec3& perpendicular,
                        const Vec3& normal, Array<const Vec2> uvs, const Triangle& triangle) {
   effect_entered<Effect::mip_map>();
@@ -40,10 +40,10 @@ inline float footprint(const PixelCone& cone, float t, const Vec3& direction, co
   return covered < kMost ? covered : kMost;
 }
 
-// The longer axis, on the surface, of the ellipse that the cone covers, in texture coordinates, from end to end: it
-// follows the ray [Akenine-Möller et al. 2021, sec. 5]; the other one follows from the area. Where a texture is
-// stretched, that one may be longer there; then one place is read. Arguments as above. Zero where the ray is
-// perpendicular to the surface or meets it edge-on. Always finite, without invalid operations.
+// Longer axis of the ellipse that the cone covers on the surface, end to end, in texture coordinates. It follows the
+// ray [Akenine-Möller et al. 2021, sec. 5]; the other axis follows from the area. Where a texture is stretched, the
+// other axis may be longer there; then a single lookup is made. Arguments as in footprint(). Zero where the ray is
+// perpendicular to the surface or sees it edge-on. Always finite, without invalid operations.
 inline Vec2 footprint_axis(const FrameData& frame, float t, const Vec3& direction, const Vec3& perpendicular,
                            const Vec3& normal, Array<const Vec2> uvs, const Triangle& triangle) {
   constexpr float kMost = 1e18f;                                                   // products of two are finite
@@ -59,8 +59,8 @@ inline Vec2 footprint_axis(const FrameData& frame, float t, const Vec3& directio
   return std::fabs(axis.x) < kMost && std::fabs(axis.y) < kMost ? axis : Vec2{0, 0};
 }
 
-// The level at which that many texels of level 0 are one: ½·log₂. Exact for powers of two, within 0.0005 elsewhere;
-// depends on nothing but the float's bits. 0 for one texel or less and for NaN.
+// Mip level at which `texel_count` texels of level 0 become one: ½·log₂. Exact for powers of two, within 0.0005
+// elsewhere; depends only on the float's bits. 0 for one texel or less and for NaN.
 inline float texture_level(float texel_count) {
   if (!(texel_count > 1)) return 0;
   std::uint32_t word;

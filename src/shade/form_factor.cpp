@@ -7,7 +7,7 @@
 namespace pocketray {
 namespace {
 
-// The angle between two vectors, accurate when it is small [Kahan 2006]; not their unit vectors' arc cosine.
+// Angle between two vectors, accurate for small angles [Kahan 2006], unlike the arc cosine of a dot product.
 double angle_between(const Vec3d& a, const Vec3d& b) {
   Vec3d u = a * length(b), v = b * length(a);
   double sum = length(u + v), difference = length(u - v);

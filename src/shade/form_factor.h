@@ -1,5 +1,5 @@
-// The form factor of a polygon at a point: the share of the hemisphere, weighted by the cosine, that it fills. Corners
-// are relative to the point.
+// Form factor of a polygon at a point: the cosine-weighted share of the hemisphere that it fills. Corners are relative
+// to the point.
 #pragma once
 #include <cstdint>
 
@@ -7,8 +7,8 @@
 
 namespace pocketray {
 
-// The part of a polygon above the horizon [Sutherland & Hodgman 1974]; `clipped` has room for twice as many corners.
-// Returns their number. Where a polygon is not convex, the edges that join its parts run both ways and add nothing.
+// Clips a polygon to the half-space above the horizon [Sutherland & Hodgman 1974]; `clipped` has room for twice as many
+// corners. Returns their number. If the polygon is not convex, edges joining its parts run both ways and cancel.
 template <class T>
 std::uint32_t clip_to_horizon(const Vec3T<T>* corners, std::uint32_t count, const Vec3T<T>& normal, Vec3T<T>* clipped) {
   std::uint32_t kept = 0;
@@ -22,8 +22,8 @@ std::uint32_t clip_to_horizon(const Vec3T<T>* corners, std::uint32_t count, cons
   return kept;
 }
 
-// Of a polygon above the horizon, counter-clockwise as seen from the point: Lambert's formula [Baum, Rushmeier, Winget
-// 1989, eq. 7]. Negative if it is clockwise.
+// Form factor of a polygon above the horizon, counter-clockwise as seen from the point, by Lambert's formula [Baum,
+// Rushmeier, Winget 1989, eq. 7]. Negative if it is clockwise.
 double form_factor_above_horizon(const Vec3d* corners, std::uint32_t count, const Vec3d& normal);
 
 }  // namespace pocketray

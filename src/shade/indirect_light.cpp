@@ -13,7 +13,7 @@ namespace {
 
 constexpr Vec3 kWhite = {1, 1, 1};
 
-// The sum over the pattern, as if all of its pixels showed this point.
+// Sums the whole pattern, as if all of its pixels showed this point.
 Vec3 virtual_light_at(Tracer* tracer, const Surface& s) {
   const FrameData& frame = *tracer->frame;
   Surface white = s;
@@ -38,7 +38,7 @@ bool visible_surface(Tracer* tracer, Ray* ray, Hit* hit, Surface* s, float* pass
     if (hit->triangle == kNoTriangle) return false;
     frame.first_surface(frame, *ray, *hit, s);
     if (!culls(*s->material, s->front, frame.mask)) return true;
-    // A face that touches its back may be visible.
+    // A face whose back touches another face may be visible.
     Contact contact;
     gather_contact(frame, *s, *hit, visible_filter(frame), &contact, &tracer->stats);
     for (std::uint32_t i = 1; i < contact.count; ++i) {

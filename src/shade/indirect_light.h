@@ -1,22 +1,22 @@
-// Indirect light apart from the surface that reflects it, so that it can be rendered elsewhere, at fewer pixels: it is
-// smooth where textures are not.
+// Indirect light separate from the surface that reflects it, so that it can be rendered on another machine and at lower
+// resolution: it is smooth where textures are not.
 #pragma once
 #include "shade/surface.h"
 
 namespace pocketray {
 
-// The surface that a ray from the camera shows: the first that is not culled, from `hit`, its first hit. The ray, the
-// hit and *passed, the distance to the last surface passed, follow it. False if there is none.
+// Finds the surface that a camera ray shows: the first one not culled, starting at `hit`, the ray's first hit. Updates
+// the ray, the hit and *passed, the distance to the last surface passed. Returns false if there is none.
 bool visible_surface(Tracer* tracer, Ray* ray, Hit* hit, Surface* surface, float* passed);
 
-// Whether a surface reflects indirect light: some of its albedo is left.
+// Returns whether a surface reflects indirect light: some albedo is left.
 inline bool takes_indirect_light(const Surface& s) { return max_component(s.diffuse) > 0; }
 
-// Radiance that leaves the surface by the plan's method of indirect light, for an albedo of 1: irradiance / π. Virtual
-// lights are all tested for shadows.
+// Radiance leaving the surface by the plan's method of indirect light, for an albedo of 1: irradiance / π. Tests all
+// virtual lights for shadows.
 Vec3 indirect_light(Tracer* tracer, const Surface& s);
 
-// In place of light where a pixel shows no surface that reflects it.
+// Stands for the light of a pixel that shows no surface reflecting it.
 constexpr float kNoIndirectLight = -1;
 
 // indirect_light() at a pixel's first sample, or kNoIndirectLight.

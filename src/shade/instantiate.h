@@ -1,4 +1,4 @@
-// A part of the kernel, instantiated for every combination of the effects that it depends on; the plan's is selected
+// Instantiates a part of the kernel for every combination of the effects on which it depends; the plan's is selected
 // once per frame.
 #pragma once
 #include <cstddef>
@@ -14,7 +14,7 @@ constexpr std::size_t effect_count(EffectMask mask) {
   return n;
 }
 
-// The effects of a mask as an array.
+// Effects of a mask as an array.
 template <EffectMask mask>
 struct EffectsOf {
   Effect effects[effect_count(mask)] = {};

@@ -11,10 +11,10 @@
 namespace pocketray {
 namespace {
 
-// Neighbours show the same surface if it is the same triangle, or if their normals differ by less than this cosine and
-// the second lies off the first's plane by at most this slope.
+// Neighbouring pixels show the same surface if they hit the same triangle, or if their normals are closer than this
+// cosine and the second point lies off the first one's plane by at most this slope.
 constexpr float kSameNormal = 0.9f, kSamePlane = 0.15f;
-// Fewer pixels have too few sources to stand for all.
+// Fewer pixels cover too few sources to represent all.
 constexpr std::uint32_t kSharersMin = 4;
 
 bool shows_same(const InterleavedPixel& a, const InterleavedPixel& b) {
@@ -25,21 +25,21 @@ bool shows_same(const InterleavedPixel& a, const InterleavedPixel& b) {
   return height * height <= kSamePlane * kSamePlane * dot(way, way);
 }
 
-// An aligned tile and the pixels about it that its pixels take light from, by rows.
+// A region is an aligned tile with a border of the pixels from which its pixels take light, by rows.
 constexpr std::uint32_t kRegionSide = kTakenBefore + kTileSide + kTakenAfter;
 constexpr std::uint32_t kRegionPixels = kRegionSide * kRegionSide;
 enum class Link : std::uint8_t { unknown, different, same };
 struct Region {
-  bool is_one_surface;  // all of its pixels show it, and so all that wanted pixels take light from
+  bool is_one_surface;  // all of its pixels show one surface, and so do all from which wanted pixels take light
   InterleavedPixel pixel[kRegionPixels];
-  Link right[kRegionPixels], below[kRegionPixels];  // whether it shows the same surface as the next pixel there
-  InterleavedLight column[kRegionPixels];           // of a source, sums along columns; none yet: of no pixel
+  Link right[kRegionPixels], below[kRegionPixels];  // whether the next pixel shows the same surface
+  InterleavedLight column[kRegionPixels];           // sums along columns for one source; starts with no pixels
 };
 
 bool is_known(const InterleavedPixel& pixel) { return pixel.row != kNone; }
 bool is_hit(const InterleavedPixel& pixel) { return is_known(pixel) && pixel.triangle != kNone; }
 
-// Pixels to trace, in packets. Columns and rows count from the region's first.
+// Pixels to trace in packets. Columns and rows are relative to the region.
 struct PixelList {
   std::uint32_t count = 0;
   std::uint8_t column[kRegionPixels] = {}, row[kRegionPixels] = {};
@@ -50,11 +50,11 @@ struct PixelList {
 };
 struct PixelLists {
   PixelList wanted;  // in Morton order
-  PixelList others;  // in the picture, about wanted ones
+  PixelList others;  // the pixels around them within the picture
 };
 
 struct SharedTile {
-  std::uint32_t column, row;  // of its first pixel in the picture
+  std::uint32_t column, row;  // of the region's tile in the picture
   const PixelLists* lists;
 };
 
@@ -67,9 +67,9 @@ constexpr PixelLists all_pixels() {
       if (column - kTakenBefore >= kTileSide || row - kTakenBefore >= kTileSide) lists.others.add(column, row);
   return lists;
 }
-constexpr PixelLists kAllPixels = all_pixels();  // of a tile that is wanted whole, within the picture
+constexpr PixelLists kAllPixels = all_pixels();  // for a tile that is wanted whole and lies within the picture
 
-// The tile's pixels in the mask, and those about them.
+// Lists the tile's pixels in the mask and the pixels around them.
 void list_pixels(const Settings& settings, std::uint64_t mask, PixelLists* room, SharedTile* tile) {
   if (mask == ~std::uint64_t(0) && tile->column >= kTakenBefore && tile->row >= kTakenBefore &&
       tile->column + kTileSide + kTakenAfter <= settings.width &&
@@ -90,12 +90,12 @@ void list_pixels(const Settings& settings, std::uint64_t mask, PixelLists* room,
   }
   for (std::uint32_t i = 0; i < kRegionPixels; ++i) {
     const std::uint32_t column = i % kRegionSide, row = i / kRegionSide;
-    const std::uint32_t x = tile->column + column - kTakenBefore, y = tile->row + row - kTakenBefore;  // or beyond 2^31
+    const std::uint32_t x = tile->column + column - kTakenBefore, y = tile->row + row - kTakenBefore;  // wraps
     if (is_taken[i] && !is_wanted[i] && x < settings.width && y < settings.height) room->others.add(column, row);
   }
 }
 
-// First hits of a sample of some pixels, with the surfaces there and, where known, the shadows of lights.
+// First hits of one sample of some pixels, with their surfaces and, where known, the shadows of lights.
 struct FirstHits {
   Ray ray[kPacketMax];
   Hit hit[kPacketMax];
@@ -128,7 +128,7 @@ void find_first_hits(Tracer* tracer, const SharedTile& tile, const PixelList& pi
       frame.first_surface(frame, first->ray[i], first->hit[i], &first->shadows.surface[i]);
 }
 
-// The indices of a sample of some pixels of the region in FrameData::compensation_paths.
+// Lists the indices in FrameData::compensation_paths of one sample of some of the region's pixels.
 void list_paths(const Settings& settings, const SharedTile& tile, std::uint32_t sample, std::uint32_t count,
                 const std::uint8_t* in_region, std::uint32_t* pixel) {
   for (std::uint32_t i = 0; i < count; ++i) {
@@ -138,7 +138,7 @@ void list_paths(const Settings& settings, const SharedTile& tile, std::uint32_t 
   }
 }
 
-// Adds what the pixels gather, those of the list from `begin`, to the region, which lacks it.
+// Gathers light at the pixels of the list from `begin` on and stores it in the region, which lacks them.
 void gather(Tracer* tracer, const SharedTile& tile, std::uint32_t sample, const PixelList& pixels, std::uint32_t begin,
             std::uint32_t count, const FirstHits& first, Region* region) {
   const FrameData& frame = *tracer->frame;
@@ -188,7 +188,7 @@ void link_neighbours(Region* region) {
   region->is_one_surface = is_one_surface;
 }
 
-// Calls visit(k) for a pixel, and those within reach along a row or column to which all neighbours show the same.
+// Calls visit(k) for a pixel and the pixels in reach along its row or column that are linked to it by one surface.
 template <class Visit>
 void along(const Link* links, std::uint32_t step, std::uint32_t own, Visit visit) {
   visit(own);
@@ -202,7 +202,7 @@ void add(const InterleavedLight& light, InterleavedLight* sum) {
 
 constexpr InterleavedLight kNoLight = {{0, 0, 0}, {0, 0, 0}, 0};
 
-// The sum over all that along() visits if no link keeps it from any, in its order. light(k): of a pixel.
+// Sums light(k) over everything along() would visit if all links held, in the same order.
 template <class Light>
 InterleavedLight sum_of_all(std::uint32_t step, std::uint32_t own, bool with_open, Light light) {
   InterleavedLight sum = light(own);
@@ -215,7 +215,7 @@ InterleavedLight sum_of_all(std::uint32_t step, std::uint32_t own, bool with_ope
   return sum;
 }
 
-// The same light where the whole region shows one surface.
+// Fast path of add_shared_light() for a region that shows a single surface.
 void add_light_of_one_surface(const FrameData& frame, const PixelList& wanted, int source, Region* region,
                               FirstHits* first) {
   CHECK(region->is_one_surface);
@@ -232,7 +232,7 @@ void add_light_of_one_surface(const FrameData& frame, const PixelList& wanted, i
   }
 }
 
-// Adds what the wanted pixels take from those about them to the light that their surfaces emit.
+// Adds the light that the wanted pixels share with their neighbours to their surfaces' glow.
 void add_shared_light(const FrameData& frame, const PixelList& wanted, Region* region, FirstHits* first) {
   for (int source = 0; source < kInterleavedSourceCount; ++source) {
     if (!has(frame.mask, kInterleavedSources[source]->effect)) continue;
@@ -267,7 +267,7 @@ void add_shared_light(const FrameData& frame, const PixelList& wanted, Region* r
   }
 }
 
-// Traces a sample of the tile's wanted pixels and adds it to the image.
+// Traces one sample of the tile's wanted pixels and adds it to the image.
 void trace_sample(Tracer* tracer, const SharedTile& tile, std::uint32_t sample, const PixelRows& image,
                   Region* region) {
   const FrameData& frame = *tracer->frame;
@@ -307,7 +307,7 @@ void trace_sample(Tracer* tracer, const SharedTile& tile, std::uint32_t sample, 
   tracer->tile_shadows = nullptr;
 }
 
-// What a tile's region shares with that of the next tile to the right.
+// Moves what the region shares with the next tile to the right.
 void move_on(Region* region) {
   for (std::uint32_t row = 0; row < kRegionSide; ++row)
     for (std::uint32_t column = 0; column < kRegionSide; ++column) {
@@ -320,7 +320,7 @@ void move_on(Region* region) {
     }
 }
 
-// Calls visit(kept, pixel) for the pixels of some rows of the region, and the places where the tracer keeps them.
+// Calls visit(kept, y, pixel) for pixels of kKeptRows rows of the region and their slots in the tracer.
 template <class Visit>
 void for_kept_pixels(Tracer* tracer, const SharedTile& tile, std::uint32_t first_row, Region* region, Visit visit) {
   const std::uint32_t width = tracer->frame->settings.width;

@@ -1,8 +1,8 @@
 // Interleaved sampling [Keller & Heidrich 2001; Wald et al. 2002] of virtual lights and of the environment: each pixel
-// traces shadow rays to a sixteenth of the sources, by its place in a pattern of 4 × 4, and takes the mean of the
-// pixels about it on the same surface: those to which neighbours along its row, then along a column, show the same.
-// Where these are few, all pixels about it tell how much of the light is hidden. A pixel depends on the 4 × 4 about it
-// alone: whichever pixels are asked for, those about them are traced, too, and the picture does not depend on how it is
+// traces shadow rays to a sixteenth of the sources, chosen by its place in a 4 × 4 pattern, and takes the mean over
+// nearby pixels on its surface: those linked to it along its row, then along a column, by neighbours on that surface.
+// Where these are few, all nearby pixels estimate how much light is hidden. A pixel depends only on the 4 × 4 pixels
+// around it: these are traced whichever pixels are requested, so that the picture does not depend on how it is
 // divided.
 #pragma once
 #include <algorithm>
@@ -16,7 +16,7 @@ constexpr EffectMask kInterleavedEffects = bit(Effect::instant_radiosity) | bit(
 constexpr bool is_interleaved(EffectMask mask) { return (mask & kEffectsBuilt & kInterleavedEffects) != 0; }
 
 constexpr std::uint32_t kPatternSide = 4, kPatternPixels = kPatternSide * kPatternSide;
-// A pixel takes light from those at most so many columns and rows before and after it: one of each in the pattern.
+// A pixel takes light from up to this many columns and rows before and after it, one pixel per place in the pattern.
 constexpr std::uint32_t kTakenBefore = 1, kTakenAfter = 2;
 static_assert(kTakenBefore + 1 + kTakenAfter == kPatternSide, "each place of the pattern once");
 
@@ -25,9 +25,9 @@ struct InterleavedPoints {
   std::uint32_t count;
   const Surface* const* surface;
   const std::uint8_t* place;
-  const std::uint32_t* pixel = nullptr;  // its index in FrameData::compensation_paths; null: none is kept
+  const std::uint32_t* pixel = nullptr;  // index in FrameData::compensation_paths; null: none is kept
 };
-// What arrives from a pixel's sixteenth of the sources, or the sum over pixels: with and without shadows.
+// Light from a pixel's sixteenth of the sources, or a sum over pixels: with (lit) and without (open) shadows.
 struct InterleavedLight {
   Vec3 lit = {0, 0, 0}, open = {0, 0, 0};
   std::uint32_t pixel_count = 1;
@@ -35,17 +35,17 @@ struct InterleavedLight {
 
 constexpr int kInterleavedSourceCount = 2;
 
-// What a pixel has gathered.
+// Light gathered at a pixel.
 struct InterleavedPixel {
-  std::uint32_t row;       // of the picture; kNone: it has gathered nothing yet
-  std::uint32_t triangle;  // kNone: its ray hits nothing, and the rest is not set
+  std::uint32_t row;       // row in the picture; kNone: nothing gathered yet
+  std::uint32_t triangle;  // kNone: the ray hits nothing, and the rest is not set
   Vec3 point, normal, geometric;
   InterleavedLight light[kInterleavedSourceCount];
 };
-// Those of the last rows of a row of tiles, which the next row of tiles takes light from.
+// The last rows of a row of tiles, from which the next row of tiles takes light.
 constexpr std::uint32_t kKeptRows = kTakenBefore + kTakenAfter;
 constexpr std::uint32_t kept_pixel_count(const Settings& settings) { return kKeptRows * settings.width; }
-// Gives a tracer that many pixels, for a frame.
+// Gives a tracer its pixels for a frame.
 void keep_interleaved_pixels(Array<InterleavedPixel> pixels, Tracer* tracer);
 
 constexpr std::uint32_t kInterleavedSourceMax = std::max(kVirtualLightRoom, kEnvironmentLightMax);
@@ -56,21 +56,21 @@ struct SourceRay {
   Ray ray;
 };
 
-// A kind of sources.
+// A kind of source.
 struct InterleavedSource {
   Effect effect;
   bool is_distant;
   bool reads_open;  // irradiance() reads InterleavedLight::open even where many pixels show the surface
   std::uint32_t (*count)(const FrameData& frame);
-  Vec3 (*place)(const FrameData& frame, std::uint32_t index);  // a point, or the direction towards a distant one
-  std::uint32_t (*place_in_pattern)(const FrameData& frame, std::uint32_t index);  // whose pixels take it
+  Vec3 (*place)(const FrameData& frame, std::uint32_t index);  // a point, or the direction towards a distant source
+  std::uint32_t (*place_in_pattern)(const FrameData& frame, std::uint32_t index);  // that samples it
   // Lists the shadow rays of a first hit, at most kSourcesOfPixelMax, and returns their number.
   std::uint32_t (*list_rays)(const FrameData& frame, const Surface& surface, std::uint32_t place_in_pattern,
                              SourceRay* rays);
   void (*gather)(const FrameData& frame, const InterleavedPoints& points, TraceStats* stats, std::uint64_t* rays,
                  InterleavedLight* light);
   // Irradiance / π at a point of unit normal, from the sum over the pixels that show its surface; if these are few,
-  // from that over all pixels about it, and only the share that shadows leave of the light counts.
+  // from the sum over all pixels around it, of which only the unshadowed share counts.
   Vec3 (*irradiance)(const FrameData& frame, const Vec3& point, const Vec3& normal, const InterleavedLight& sum,
                      bool are_few);
 };

@@ -1,4 +1,4 @@
-// The shadow rays of many sources: of a sixteenth, which interleaved pixels have, or of all.
+// Shadow rays to many sources: to a sixteenth of them for interleaved pixels, or to all.
 #pragma once
 #include <cstring>
 #include <limits>
@@ -9,7 +9,6 @@
 
 namespace pocketray {
 
-// A source that reaches a surface if nothing is in the way.
 // The indices first, first + 16, … below a count, or all.
 template <std::uint32_t step>
 struct SteppedIndices {
@@ -19,27 +18,28 @@ struct SteppedIndices {
   std::uint32_t operator[](std::uint32_t k) const { return first + step * k; }
 };
 
+// A source that reaches a surface if nothing is in the way.
 struct SentLight {
   Vec3 light;
   float most;  // its brightest channel
   std::uint32_t source;
 };
 
-// Those of a surface.
+// Unblocked light from the sources that reach a surface.
 template <std::uint32_t capacity>
 struct SentLights {
   std::uint32_t count = 0;
-  float least = 0;        // fainter ones have no rays of their own
-  float enough = 0;       // of the light of a group
-  float place = .5f;      // in a group, of the source that stands for it
-  Vec3 open = {0, 0, 0};  // the sum of their light
-  Vec3 origin;            // of shadow rays
+  float least = 0;        // sources fainter than this have no ray of their own
+  float enough = 0;       // light of a complete group
+  float place = .5f;      // position within a group of the source that represents it
+  Vec3 open = {0, 0, 0};  // sum of their light
+  Vec3 origin;            // of their shadow rays
   SentLight sent[capacity];
-  SentLights() {}  // leaves them as they are
+  SentLights() {}  // skips initialization
 };
 using PixelLights = SentLights<kSourcesOfPixelMax>;
 
-// Uniform in [0, 1), at random over surfaces, but fixed on them.
+// Random number in [0, 1), uniform over surfaces but fixed at each point.
 inline float random_place(const SurfacePlace& hit) {
   std::uint32_t u, v;
   std::memcpy(&u, &hit.u, sizeof u), std::memcpy(&v, &hit.v, sizeof v);
@@ -49,14 +49,14 @@ inline float random_place(const SurfacePlace& hit) {
   return static_cast<float>((hash ^ hash >> 15) >> 8) * 0x1p-24f;
 }
 
-// Source:
-//   kFaint: of a surface's sources, those that give less than this share of their mean share a ray if the tolerance is
-//       less
-//   tolerance: neighbours form groups, see each_group()
-//   arrives(index, surface, &light): false if the surface is turned away from it
+// A Source has:
+//   kFaint: sources below this fraction of the mean over a surface's sources share a ray
+//       if the tolerance is smaller
+//   tolerance: neighbouring sources form groups, see each_group()
+//   arrives(index, surface, &light): false if the surface faces away from the source
 //   ray(index, surface, origin): the shadow ray to it from the surface's safe origin
 //   of_place(place): the sources of a place in the pattern, with their count and, by [], indices
-// Finds those of the indices that light the surface.
+// Finds which of the sources `indices` light the surface.
 template <class Source, class Indices, std::uint32_t capacity>
 void find_sources(const Source& source, const Surface& surface, const Indices& indices, SentLights<capacity>* rays) {
   CHECK_LE(indices.count, capacity);
@@ -77,22 +77,22 @@ void find_sources(const Source& source, const Surface& surface, const Indices& i
   rays->place = random_place(surface.hit);
 }
 
-// Sources that share the ray of one of them.
+// Sources that share one shadow ray.
 struct RayGroup {
   const SentLight* sent;
-  Vec3 light;  // of all of them
+  Vec3 light;  // total of the group
   float most;
 };
 
-// Sources of a group: those below `most`. The others have rays of their own.
+// Selects the sources of a group: those below `most`. The others have rays of their own.
 struct GroupRange {
   float most;
   bool contains(const SentLight& r) const { return r.most < most; }
 };
 
-// The source whose ray stands for a group, which begins at `first` and has `all` light: the one at a place in it, so
-// that each is picked by its share of the light. The brightest would favour what a surface sees close by over what is
-// hidden: in a room whose lamp also lights the gap between it and the ceiling, the error grew with the number of
+// Picks the source whose ray represents a group that begins at `first` and has `all` light: each in
+// proportion to its share of the light. Picking the brightest would favour nearby sources over hidden ones:
+// in a room whose lamp also lights the gap between it and the ceiling, the error grew with the number of
 // sources.
 template <std::uint32_t capacity>
 const SentLight* representative(const SentLights<capacity>& rays, const GroupRange& range, const SentLight* first,
@@ -108,11 +108,11 @@ const SentLight* representative(const SentLights<capacity>& rays, const GroupRan
   return found;
 }
 
-// Sources that follow each other lie close together. Calls visit(group) for groups of them that have the tolerance's
-// share of the surface's light; without a tolerance, for each and for a group of the faint. All light of a group is
-// taken to arrive if its ray does, on average as much as does: a cluster's of Lightcuts [Walter05, sec. 3], whose
-// representative is picked at random. A surface traces no more than one ray and the inverse of the tolerance, however
-// many sources there are.
+// Calls visit(group) for groups of consecutive sources, which lie close together. A group holds the tolerance's
+// share of the surface's light; without a tolerance, each source forms a group, and so do all faint ones. A group
+// arrives whole if its ray does, which is right on average: a cluster of Lightcuts [Walter05, sec. 3] with a random
+// representative. A surface traces at most one ray plus the inverse of the tolerance, however many sources there
+// are.
 template <std::uint32_t capacity, class Visit>
 void each_group(const SentLights<capacity>& rays, Visit visit) {
   constexpr float kAll = std::numeric_limits<float>::infinity();
@@ -136,7 +136,7 @@ void each_group(const SentLights<capacity>& rays, Visit visit) {
   }
 }
 
-// The light that arrives, `is_blocked(ray)` telling what does not.
+// Light that arrives; `is_blocked(ray)` tests shadow rays.
 template <class Source, std::uint32_t capacity, class IsBlocked>
 [[gnu::always_inline]] inline Vec3 arriving_light(const Source& source, const Surface& surface,
                                                   const SentLights<capacity>& found, IsBlocked is_blocked) {
@@ -151,7 +151,7 @@ template <class Source, std::uint32_t capacity, class IsBlocked>
   return all ? found.open : lit;
 }
 
-// Rays run to a point each, so that no shaft would hold many: each is traced by itself.
+// Each ray goes to a different point, so few would share a shaft: each is traced by itself.
 template <class Source>
 void gather_interleaved(const FrameData& frame, const InterleavedPoints& points, const Source& source,
                         bool casts_shadows, TraceStats* stats, std::uint64_t* rays, InterleavedLight* light) {

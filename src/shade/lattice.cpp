@@ -10,10 +10,10 @@
 namespace pocketray {
 namespace {
 
-// Of a pixel in the window; those to be reconstructed are never wanted.
+// State of a pixel in the window; reconstructed pixels are never wanted.
 enum State : std::uint8_t { kUnknown, kWanted, kKnown };
 
-// What the pixels of a row of tiles are made of: a tracer's window, and the columns in use.
+// A tracer's window, from which a row of tiles is built, and the columns in use.
 struct Window {
   Tracer* tracer;
   PixelRows rows;
@@ -24,13 +24,13 @@ struct Window {
   std::uint8_t& state(std::uint32_t column, std::uint32_t row) const {
     return states[static_cast<std::size_t>(row - rows.first_row) * rows.width + column];
   }
-  // A picture with one row or column has no pairs of neighbours: all of it is traced.
+  // A picture with one row or column has no pairs of neighbours, so all of it is traced.
   bool is_traced(std::uint32_t column, std::uint32_t row) const {
     return on_lattice(settings().resolution, column, row) || settings().width < 2 || settings().height < 2;
   }
 };
 
-// The tracer's window about the tiles from `row` on. The rows that it shares with the last one stay known.
+// Opens the tracer's window around the tiles from `row` on. Rows shared with the previous window stay known.
 Window open_window(Tracer* tracer, std::uint32_t row) {
   LatticeWindow& kept = tracer->window;
   CHECK_EQ(row % kTileSide, 0u);
@@ -50,13 +50,13 @@ Window open_window(Tracer* tracer, std::uint32_t row) {
   return {tracer, {kept.pixels.data, width, row - kRowsAbove}, kept.states.data, width, 0};
 }
 
-// The index of a pixel's neighbour, which may lie beyond the picture's edges, mirrored at these.
+// Index of a pixel's neighbour, mirrored at the picture's edges.
 std::uint32_t mirrored(std::uint32_t index, int step, std::uint32_t count) {
   const int last = static_cast<int>(count) - 1, at = std::abs(static_cast<int>(index) + step);
   return static_cast<std::uint32_t>(at > last ? 2 * last - at : at);
 }
 
-// The pixels that a missing one lies between, in opposite pairs.
+// Opposite pairs of pixels around a missing one.
 struct Neighbours {
   std::uint32_t column[4], row[4];
 };
@@ -77,7 +77,7 @@ void want_columns(Window* window, std::uint32_t begin, std::uint32_t end) {
   window->column_end = std::max(window->column_end, end);
 }
 
-// Marks the pixels that a pixel is made of.
+// Marks the traced pixels on which a pixel depends.
 void want(Window* window, std::uint32_t column, std::uint32_t row) {
   std::uint8_t& state = window->state(column, row);
   if (state != kUnknown) return;
@@ -89,7 +89,7 @@ void want(Window* window, std::uint32_t column, std::uint32_t row) {
   for (int i = 0; i < 4; ++i) want(window, n.column[i], n.row[i]);
 }
 
-// The same for all pixels of a tile.
+// Marks the traced pixels on which a tile depends.
 void want_tile(Window* window, std::uint32_t column, std::uint32_t row) {
   const Settings& settings = window->settings();
   const std::uint32_t reach = settings.resolution == Resolution::half ? 2 : 1;
@@ -115,7 +115,7 @@ void trace_pixels(const Window& window, Tile* tile) {
   tile->count = 0;
 }
 
-// Calls visit(column, row) for the wanted pixels of the lattice among these, and marks them as known.
+// Calls visit(column, row) for the lattice's wanted pixels in the range, and marks them as known.
 template <typename Visit>
 void take_wanted(const Window& window, std::uint32_t column_begin, std::uint32_t column_end, std::uint32_t row_begin,
                  std::uint32_t row_end, Visit visit) {
@@ -128,7 +128,7 @@ void take_wanted(const Window& window, std::uint32_t column_begin, std::uint32_t
     }
 }
 
-// The rows of the picture in the window.
+// Rows of the picture in the window.
 std::uint32_t window_begin(const Window& window) {
   return window.tracer->window.row - std::min(window.tracer->window.row, kRowsAbove);
 }
@@ -136,7 +136,7 @@ std::uint32_t window_end(const Window& window) {
   return std::min(window.rows.first_row + kWindowRows, window.settings().height);
 }
 
-// In packets of neighbours.
+// Traces in packets of neighbours.
 void trace_wanted(const Window& window) {
   Tile tile;
   for (std::uint32_t column = window.column_begin; column < window.column_end; column += kTileSide)
@@ -148,7 +148,7 @@ void trace_wanted(const Window& window) {
   trace_pixels(window, &tile);
 }
 
-// By the frame's function for them, a row of tiles at a time.
+// Traces with the frame's strip function, a row of tiles at a time.
 void trace_wanted_strips(const Window& window) {
   CHECK(window.tracer->frame->trace_lattice_strip != nullptr);
   const std::uint32_t end = window_end(window), left = window.column_begin / kTileSide * kTileSide;
@@ -191,7 +191,7 @@ const Vec3& reconstructed(const Window& window, std::uint32_t column, std::uint3
   return pixel;
 }
 
-// Calls visit(column, row) for the pixels of a tile that are in the mask.
+// Calls visit(column, row) for the pixels of a tile in the mask.
 template <typename Visit>
 void for_each_pixel(std::uint32_t left, std::uint32_t top, std::uint64_t mask, Visit visit) {
   for (; mask; mask &= mask - 1) {
@@ -200,7 +200,7 @@ void for_each_pixel(std::uint32_t left, std::uint32_t top, std::uint64_t mask, V
   }
 }
 
-// A whole tile inside the picture, whose neighbours need no mirror, row by row.
+// Reconstructs a whole tile inside the picture row by row; its neighbours need no mirroring.
 void reconstruct_tile(const Window& window, std::uint32_t left, std::uint32_t top, const PixelRows& image) {
   const auto width = static_cast<std::ptrdiff_t>(window.rows.width);
   constexpr int kSide = kTileSide;

@@ -1,17 +1,17 @@
 // Undersampling: the pixels of a lattice are traced, the others reconstructed along the edges between them.
 //
-// A checkerboard is half of the pixels; every other pixel of every other row is a quarter. A missing pixel of a checkerboard
-// lies between two pairs of opposite neighbours and takes the mean of the pair that differs less. A quarter is first completed to a checkerboard, by the diagonals, as in
-// [Zhou et al. 2012, "Image Zooming Using Directional Cubic Convolution Interpolation", sec. 2] with means for cubics.
-// At the picture's edges it is mirrored.
+// A checkerboard has half of the pixels; every other pixel of every other row is a quarter. A missing pixel of a
+// checkerboard lies between two pairs of opposite neighbours and takes the mean of the pair that differs less. A
+// quarter is first completed to a checkerboard along the diagonals, as in [Zhou et al. 2012, "Image Zooming Using
+// Directional Cubic Convolution Interpolation", sec. 2] with means for cubics. At the picture's edges it is mirrored.
 //
-// A pixel depends on those at most two columns and rows away: the picture does not depend on how it is divided.
+// A pixel depends only on pixels at most two columns and rows away: the picture does not depend on how it is divided.
 #pragma once
 #include "shade/strip.h"
 
 namespace pocketray {
 
-// The rows of a row of tiles and those about it that its pixels depend on.
+// Rows around a row of tiles on which its pixels depend.
 constexpr std::uint32_t kRowsAbove = 2, kRowsBelow = 1;
 constexpr std::uint32_t kWindowRows = kRowsAbove + kTileSide + kRowsBelow;
 
@@ -28,7 +28,7 @@ constexpr bool on_lattice(Resolution resolution, std::uint32_t column, std::uint
 }
 
 constexpr std::uint32_t window_pixel_count(const Settings& settings) { return kWindowRows * settings.width; }
-// Whether memory is planned for it, even if it is off at first.
+// True if memory is planned for undersampling, even if it is off at first.
 constexpr bool plans_lattice(const Settings& settings) {
   const EffectMask effect = bit(Effect::undersampling);
   return (settings.resolution != Resolution::full || (settings.forced_on & effect)) && !(settings.forced_off & effect);
@@ -38,7 +38,7 @@ inline std::size_t lattice_need(const Settings& settings) {
   const std::size_t count = std::size_t(settings.threads) * window_pixel_count(settings);
   return arena_need<Vec3>(count) + arena_need<std::uint8_t>(count);
 }
-// Gives a tracer its window, of window_pixel_count() each.
+// Gives a tracer its window; both arrays have window_pixel_count() elements.
 void keep_window(Array<Vec3> pixels, Array<std::uint8_t> states, Tracer* tracer);
 
 // Traces or reconstructs the strip's pixels.

@@ -11,10 +11,10 @@ namespace {
 
 constexpr float kInverseSquareMax = std::numeric_limits<float>::max() / 2;  // stays finite times a cosine just above 1
 
-// Clamps a light's irradiance, even at a point on the light itself, to kRadianceMax, so that shading stays finite.
+// Limits a light's irradiance to kRadianceMax, even at a point on the light itself, so that shading stays finite.
 Vec3 bounded(const Vec3& irradiance) { return min(irradiance, Vec3{kRadianceMax, kRadianceMax, kRadianceMax}); }
 
-// Direction and inverse square of a light seen from a point. False if they coincide or the light is out of range.
+// Sets direction and inverse square distance of a light. Returns false if the point is on the light or out of range.
 bool reach(const LightPoint& light, const Vec3& point, LightSample* s, float* inverse_square) {
   s->to_light = light.position - point;
   float square = dot(s->to_light, s->to_light);
@@ -62,7 +62,7 @@ bool sample_directional_light(const LightPoint& light, const Vec3&, LightSample*
   return true;
 }
 
-// One of the points that represent an area light [Aranha07] sec. 3.1: a Lambertian emitter with a share of its area.
+// One of the points that represent an area light [Aranha07] sec. 3.1: a Lambertian emitter of a part of its area.
 bool sample_area_light(const LightPoint& light, const Vec3& point, LightSample* s) {
   effect_entered<Effect::area_light>();
   float inverse_square;

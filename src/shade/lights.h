@@ -4,16 +4,16 @@
 
 namespace pocketray {
 
-// Whether a point lies in the plane of an area light's point, to within rounding and 2^-9 of their distance.
+// True if a point lies in the plane of an area light's point, to within rounding and 2^-9 of their distance.
 inline bool is_in_plane(const LightPoint& light, const Vec3& p) {
-  constexpr float kUneven = 0x1p-9f;  // chosen: what hides so little of a lamp's light is not seen
+  constexpr float kUneven = 0x1p-9f;  // chosen: so little hidden light is not visible
   const Vec3 offset = p - light.position;
   const float rounding = 0x1p-20f * max_component(max(abs(p), abs(light.position)));
   return std::fabs(dot(offset, light.direction)) <= kUneven * max_component(abs(offset)) + rounding;
 }
 
-// Whether a triangle is of the flat piece of a lamp that a point of it lies on: of its material and in its plane. It gets
-// no light from the point and hides none of it; other pieces of the lamp do both.
+// True if a triangle belongs to the flat piece of a lamp on which the light's point lies: its material, in its plane.
+// It neither receives light from the point nor blocks it; other pieces of the lamp do both.
 inline bool is_beside(const FrameData& frame, const LightPoint& light, std::uint32_t triangle) {
   const Triangle& t = frame.scene->triangles[triangle];
   if (t.material() != light.material) return false;
@@ -22,12 +22,12 @@ inline bool is_beside(const FrameData& frame, const LightPoint& light, std::uint
   return true;
 }
 
-// Whether surfaces have stored light, which includes that of lamps on surfaces of their own material.
+// True if surfaces have stored light, which includes that of lamps on surfaces of their own material.
 inline bool has_stored_light(const FrameData& frame) {
   return has(frame.mask, Effect::radiosity) && frame.scene->radiosity_info.count > 0;
 }
-// Whether the surface is of the light's material, and whether it then gets none of its light: those of the same flat
-// piece do not, and those with stored light have it there.
+// is_own(): the surface has the light's material. is_unlit_by_own(): such a surface gets no light from it, because it
+// is in the same flat piece or its stored light includes it.
 inline bool is_own(const FrameData& frame, const Surface& s, const LightPoint& light) {
   return light.material != kNone && &frame.scene->materials[light.material] == s.material;
 }
@@ -35,11 +35,11 @@ inline bool is_unlit_by_own(const FrameData& frame, const Surface& s, const Ligh
   return has_stored_light(frame) || is_beside(frame, light, s.hit.triangle);
 }
 
-// The light, if its own surface is not to hide it; otherwise null.
+// Returns the light if its own surface must not block it, otherwise null.
 inline const LightPoint* emitter_of(const LightPoint& light) { return light.material != kNone ? &light : nullptr; }
 
-// Whether a light, if unblocked, contributes anything to the surface. A piece of an emitter does not light itself;
-// another one gets from no point of it more than if the emitter were all around.
+// Returns whether a light, if unblocked, contributes to the surface. A piece of an emitter does not light itself;
+// another piece gets at most as much from each point as if the emitter surrounded it.
 inline bool lights_up(const FrameData& frame, const Surface& s, const LightRun& run, const LightPoint& light,
                       LightSample* sample) {
   const bool own = is_own(frame, s, light);

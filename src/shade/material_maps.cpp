@@ -20,13 +20,13 @@ const MaterialMaps* maps_of(const Scene& scene, const Surface& s) {
 
 float within(float x, float low, float high) { return x > low ? (x < high ? x : high) : low; }
 
-// The last look-up at a point: many files keep occlusion in the red of their metallic-roughness texture.
+// The last lookup at a point: many files store occlusion in the red channel of their metallic-roughness texture.
 struct LookUp {
   const TextureUse* use = nullptr;
   Vec3 numbers;
 };
 
-// `uv` is that of the first texture coordinates.
+// `uv` are the first texture coordinates.
 template <EffectMask mask>
 Vec3 numbers_of(const FrameData& frame, const TextureUse& use, const Surface& s, Vec2 uv) {
   if constexpr (has(mask, Effect::second_uv)) return frame.numbers(frame, use, s);
@@ -59,7 +59,7 @@ void apply_specular(const FrameData& frame, const MaterialMaps& maps, const Surf
   if (maps.specular_color.texture != kNone) model->dielectric *= frame.color(frame, maps.specular_color, s).rgb;
 }
 
-// What the map leaves of ambient light.
+// Fraction of ambient light left by the map.
 template <EffectMask mask>
 float openness(const FrameData& frame, const MaterialMaps& maps, const Surface& s, Vec2 uv, LookUp* last) {
   effect_entered<Effect::occlusion>();
@@ -67,8 +67,8 @@ float openness(const FrameData& frame, const MaterialMaps& maps, const Surface& 
   return 1 + maps.occlusion_strength * (open - 1);
 }
 
-// Whether the plan has the effect. Instances with anisotropy, two sets of texture coordinates or clear coats hold the
-// code of all maps.
+// Instances with anisotropy, two sets of texture coordinates or clear coats contain the code of all maps; takes_part()
+// then checks the plan for the effect.
 constexpr EffectMask kHoldAll = bit(Effect::anisotropy) | bit(Effect::second_uv) | bit(Effect::clear_coat);
 template <EffectMask mask>
 bool takes_part(const FrameData& frame, Effect effect) {

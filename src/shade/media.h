@@ -21,7 +21,7 @@ inline void exit_medium(MediumStack* stack, std::uint32_t material) {
     return;
   }
 }
-// The bodies that contain a ray beyond a contact. It leaves bodies before it enters others.
+// Updates the stack for a ray that crosses a contact: it leaves bodies before it enters others.
 void cross_contact(const Scene& scene, const Contact& contact, MediumStack* stack);
 // Transmittance along a distance (Beer–Lambert).
 inline Vec3 transmittance(const Vec3& absorption, float distance) {
@@ -31,7 +31,7 @@ inline Vec3 transmittance(const Vec3& absorption, float distance) {
   return {one(absorption.x), one(absorption.y), one(absorption.z)};
 }
 
-// The bodies that contain the point `eye`, found by following a ray from it to infinity.
+// Returns the bodies that contain the point `eye`, found by following a ray from it to infinity.
 MediumStack media_at(const FrameData& frame, const Vec3& eye, const Vec3& direction);
 
 }  // namespace pocketray

@@ -11,7 +11,7 @@ float component(float texel) {
   return x > -1 ? x : -1;
 }
 
-// The grain's direction as its texture turns and weakens it.
+// Grain direction, turned and weakened by its texture.
 Vec2 turned_grain(const Vec2& d, const Vec3& numbers) {
   const float x = numbers.x * (2 / 255.0f) - 1, y = numbers.y * (2 / 255.0f) - 1, square = x * x + y * y;
   if (!(square > 0)) return {0, 0};
@@ -41,7 +41,7 @@ bool tangent_frame(const FrameData& frame, const Surface& s, const Vec3& n, Vec3
     if (scene.uvs.empty()) return false;
     const float eu = scene.uvs[j].x - scene.uvs[i].x, ev = scene.uvs[j].y - scene.uvs[i].y;
     const float fu = scene.uvs[k].x - scene.uvs[i].x, fv = scene.uvs[k].y - scene.uvs[i].y;
-    const float area = eu * fv - ev * fu;  // twice the triangle's in the texture, negative where v runs downwards
+    const float area = eu * fv - ev * fu;  // twice the triangle's area in the texture, negative where v runs downwards
     if (!(area < 0 || area > 0)) return false;
     handedness = area < 0 ? 1 : -1;
     if (!at_vertices) {

@@ -9,7 +9,7 @@ inline Ray pixel_ray(const FrameData& frame, std::uint32_t column, std::uint32_t
   return camera_ray(frame.camera, static_cast<float>(column) + offset.x, static_cast<float>(row) + offset.y);
 }
 
-// The sample whose ray first hits `hit`; `surface` is there, or null.
+// Radiance of the sample whose ray first hits `hit`; `surface` is the surface there, or null.
 inline Vec3 sample_radiance(Tracer* tracer, const Ray& ray, const Hit& hit, const Surface* surface) {
   const FrameData& frame = *tracer->frame;
   tracer->budget = tracer->skip_max = tracer->branching.allowed = frame.left_out_max;

@@ -25,7 +25,7 @@ class PointTester {
     *ray = {safe_origin(surface_, 1), sample.to_light, sample.t_max};
     return true;
   }
-  // Of a point that lights up the surface, but is below its triangle.
+  // Tests a point that lights up the surface from below its triangle's plane.
   bool test_from_below(std::uint32_t point) {
     LightSample sample;
     CHECK(lights_up(frame_, surface_, run(), frame_.lights[first_ + point], &sample));
@@ -48,7 +48,7 @@ class PointTester {
     }
     return has(tested.met, point);
   }
-  // Whether the group's probes agree, which settles all its points that are probes.
+  // Returns whether the group's probes agree, which settles all points of it that are probes.
   bool test(const PointGroup& group, const std::uint8_t* order) {
     bool all = true, none = true;
     for (std::uint32_t point : group.probes) {

@@ -9,7 +9,7 @@
 
 namespace pocketray {
 
-// At most so many points of a light or a group are tested one by one.
+// Up to this many points of a light or a group are tested one by one.
 constexpr std::uint32_t kUndividedMax = 5;
 constexpr bool has_point_groups(const Settings& settings, EffectMask mask) {
   return has(mask, Effect::area_light) && settings.points_per_area_light > kUndividedMax;
@@ -18,14 +18,14 @@ inline std::size_t point_groups_need(std::uint32_t points) {
   return arena_need<PointGroup>(points) + 2 * arena_need<std::uint8_t>(points);
 }
 
-// Whether a point's shadow ray decides about others: it leaves on the side of the triangle that is seen.
+// Returns whether a point's shadow ray may decide for others: it leaves on the visible side of the triangle.
 inline bool is_probe(const FrameData& frame, const Surface& s, const LightRun& run, const LightPoint& light,
                      LightSample* sample) {
   return lights_up(frame, s, run, light, sample) && dot(s.geometric, sample->direction) > 0;
 }
 
-// Whether something opaque blocks a point of an area light, which lights up the surface. `light` is its index in
-// FrameData::lights. Counts the rays that it traces.
+// Returns whether something opaque blocks a point of an area light that lights up the surface. `light` is its index in
+// FrameData::lights. Counts the rays traced.
 bool is_point_blocked(Tracer* tracer, const Surface& s, std::uint32_t light, bool at_first_hit);
 
 }  // namespace pocketray

@@ -11,8 +11,8 @@
 namespace pocketray {
 namespace {
 
-// Twice π times the form factor of the polygon with these corners, seen from the origin [Baum, Rushmeier, Winget 1989,
-// eq. 7]. An edge that points at the origin adds nothing.
+// Returns 2π times the form factor of the polygon with these corners, seen from the origin [Baum, Rushmeier, Winget
+// 1989, eq. 7]. An edge that points at the origin adds nothing.
 float edge_sum(const Vec3* corners, std::uint32_t count, const Vec3& normal) {
   float sum = 0;
   for (std::uint32_t i = 0; i < count; ++i) {

@@ -1,4 +1,4 @@
-// The share of a linearly transformed power of a cosine (brdf/linear_lobe.h) that a polygon receives, as float and, for
+// Share of a linearly transformed power of a cosine (brdf/linear_lobe.h) that falls into a polygon, as float and, for
 // the reference, as double.
 #pragma once
 #include <cmath>
@@ -10,14 +10,14 @@
 
 namespace pocketray {
 
-// atan(x) / x for a square x² in [0, 1], with a relative error of 1e-7: a fit of least maximum.
+// atan(x) / x for a square x² in [0, 1], with a relative error of 1e-7: a minimax fit.
 inline float arc_ratio(float square) {
   const float high = ((-0.00469327345f * square + 0.0242523942f) * square - 0.0594863817f) * square + 0.0991429240f;
   return (((high * square - 0.140194803f) * square + 0.199697241f) * square - 0.333319902f) * square + 0.999999881f;
 }
 
-// The angle between two vectors over the length of their cross product, which is not 0: by its tangent, or by that of
-// its complement if the angle is nearer to a right one.
+// Angle between two vectors divided by the length of their cross product (not 0): from its tangent, or from its
+// complement's if the angle is close to 90 degrees.
 inline float angle_over_cross(float cross_square, float dot_product) {
   const float dot_square = dot_product * dot_product;
   if (cross_square <= dot_square) {
@@ -34,16 +34,16 @@ inline double angle_over_cross(double cross_square, double dot_product) {
   return (dot_product > 0 ? acute : kPi - acute) / size;
 }
 
-// Both sums run over edges from a to b, unit vectors, in the plane of which Γ = a × b / |a × b| and z is the cosine
-// that is raised to a power. By Stokes, (m + 1) ∫ zᵐ dω over a polygon is that of m − 2, but for (m − 1) instead of (m
-// + 1), plus Γz ∫ zᵐ⁻¹ ds over its edges [Arvo 1995, "Applications of irradiance tensors", eq. 12]: all told, Γz times
-// the sum of the integrals of even powers below m; and k ∫ zᵏ ds = (k − 1)(1 − Γz²) ∫ zᵏ⁻² ds − [zᵏ⁻¹ dz/ds].
+// Both sums run over edges from a to b, unit vectors; Γ = a × b / |a × b| is the normal of their plane and z the cosine
+// that is raised to a power. By Stokes, (m + 1) ∫ zᵐ dω over a polygon is (m − 1) ∫ zᵐ⁻² dω plus Γz ∫ zᵐ⁻¹ ds over its
+// edges [Arvo 1995, "Applications of irradiance tensors", eq. 12]. In total, it is Γz times the sum of the integrals of
+// even powers below m; and k ∫ zᵏ ds = (k − 1)(1 − Γz²) ∫ zᵏ⁻² ds − [zᵏ⁻¹ dz/ds].
 template <class T>
 T edge_moment(std::uint32_t power, const Vec3T<T>& a, const Vec3T<T>& b) {
   const Vec3T<T> across = cross(a, b);
   const T square = dot(across, across);
   if (!(square > 0)) return 0;
-  T integral = angle_over_cross(square, dot(a, b)), sum = integral;  // all over |a × b|
+  T integral = angle_over_cross(square, dot(a, b)), sum = integral;  // both divided by |a × b|
   if (power == 1) return sum * across.z;
   const T inverse = 1 / square, rise = (across.x * across.x + across.y * across.y) * inverse;
   const T square_a = a.z * a.z, square_b = b.z * b.z;
@@ -57,8 +57,8 @@ T edge_moment(std::uint32_t power, const Vec3T<T>& a, const Vec3T<T>& b) {
   return sum * across.z;
 }
 
-// The share of the distribution in a polygon, whose corners are relative to the point, above the horizon of a normal.
-// No corner exceeds 2¹⁰ by much.
+// Share of the distribution in a polygon above the horizon of a normal. Corners are relative to the point; none exceeds
+// 2¹⁰ by much.
 template <class T>
 T linear_share(const LobePartsT<T>& lobe, std::uint32_t power, const Vec3T<T>* corners, std::uint32_t count,
                const Vec3T<T>& normal) {

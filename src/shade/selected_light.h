@@ -5,7 +5,7 @@
 
 namespace pocketray {
 
-// As direct_light().
+// Direct light with source selection; arguments as for direct_light().
 template <EffectMask mask>
 Vec3 selected_light(Tracer* tracer, const Surface& s, const Material& m, const Vec3& to_viewer, const Vec3& weight) {
   effect_entered<Effect::source_selection>();
@@ -31,7 +31,7 @@ Vec3 selected_light(Tracer* tracer, const Surface& s, const Material& m, const V
     seen += entry.radiance * shadow<mask>(tracer, s, run, entry.light, nullptr, at_first_hit);
   }
   const float all = max_component(tested);
-  // With nothing tested, the middle of the interval.
+  // If nothing was tested, assumes the middle of the interval.
   const float visibility = all > 0 ? max_component(seen) / all : 0.5f;
   return search.is_empty() ? seen : seen + search.estimate() * visibility;
 }

@@ -11,8 +11,8 @@
 namespace pocketray {
 namespace {
 
-// Fewer camera rays are traced one by one: measured by bench-device for 1 to 33 (Cortex-A7, the built-in scenes). Their
-// surfaces, not yet their light, are asked for, hence fewer than kPacketRaysMin.
+// Fewer camera rays are traced one by one: measured by bench-device for 1 to 33 (Cortex-A7, the built-in scenes). Only
+// their surfaces are needed at first, not their light, hence fewer than kPacketRaysMin.
 constexpr std::uint32_t kCameraRaysMin = 8;
 
 // A tile with the corners of its cells, by column and row.
@@ -24,7 +24,7 @@ struct CellTile {
   const FrameData& frame() const { return *tracer->frame; }
 };
 
-// A corner's pixel: the picture's last cells end at its edge.
+// Column of a corner's pixel: the picture's last cells end at its edge.
 std::uint32_t corner_column(const CellTile& tile, std::uint32_t i) {
   return std::min(tile.column + i * kCellSide, tile.frame().settings.width - 1);
 }
@@ -32,7 +32,7 @@ std::uint32_t corner_row(const CellTile& tile, std::uint32_t k) {
   return std::min(tile.row + k * kCellSide, tile.frame().settings.height - 1);
 }
 
-// Where the thread keeps the corner, or null. A new row of corners below the tile takes the place of an old one.
+// Returns the thread's slot for the corner, or null. A new row of corners below the tile replaces an old one.
 CellCorner* kept_corner(const CellTile& tile, std::uint32_t i, std::uint32_t k) {
   const std::uint32_t row = tile.row + k * kCellSide;
   const std::uint32_t count = tile.tracer->corner_row_count;
@@ -74,7 +74,7 @@ PixelCell cell_at(CellTile* tile, std::uint32_t i, std::uint32_t k) {
   return cell;
 }
 
-// Interpolates a cell's pixels, given by their places in the tile.
+// Interpolates the pixels of a cell in the mask, by their places in the tile.
 void interpolate(const CellTile& tile, const PixelCell& cell, std::uint64_t mask, const PixelRows& image) {
   const Vec3 &a = cell.corner[0]->radiance, &b = cell.corner[1]->radiance;
   const Vec3 &c = cell.corner[2]->radiance, &d = cell.corner[3]->radiance;
@@ -88,14 +88,14 @@ void interpolate(const CellTile& tile, const PixelCell& cell, std::uint64_t mask
   }
 }
 
-// The pixels of a tile that are not interpolated, with their cells.
+// Pixels of a tile that are not interpolated, with their cells.
 struct Doubtful {
   Tile tile;
   PixelCell cell[4];
   std::uint8_t place[kPacketMax];  // in the tile, in Morton order: 16 to a cell
 };
 
-// Takes a pixel's light from its cell's corners if they tell it. `s` receives the surface that the ray hits, if any.
+// Takes a pixel's light from its cell's corners if they predict it. `s` receives the surface that the ray hits, if any.
 bool take_light(Tracer* tracer, const Doubtful& pixels, std::uint32_t i, const Ray& ray, const Hit& hit, Surface* s,
                 Vec3* radiance) {
   if (hit.triangle == kNoTriangle) return false;
@@ -157,7 +157,7 @@ void trace_doubtful(Tracer* tracer, const Doubtful& pixels, const PixelRows& ima
     for (std::uint32_t i = 0; i < tile.count; ++i) trace_one(tracer, pixels, i, image);
     return;
   }
-  // A pixel of several samples has no one surface.
+  // A pixel with several samples has no single surface.
   if (has_packets && tile.count >= kPacketRaysMin) return trace_tile(tracer, tile, image);
   for (std::uint32_t i = 0; i < tile.count; ++i)
     image.at(tile.column[i], tile.row[i]) = pixel_radiance(tracer, tile.column[i], tile.row[i]);
@@ -191,7 +191,7 @@ void trace_cells(CellTile* tile, std::uint64_t wanted, const PixelRows& image) {
   trace_doubtful(tile->tracer, doubtful, image);
 }
 
-// The next tile to the right shares a column of corners.
+// Moves to the next tile to the right, which shares a column of corners.
 void move_right(CellTile* tile) {
   for (int k = 0; k < 3; ++k) {
     tile->corner[0][k] = tile->corner[2][k];

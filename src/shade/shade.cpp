@@ -1,5 +1,5 @@
 // From a ray to radiance: recursive ray tracing after [Whitted 1980], [Aranha07] sec. 3.1, instantiated for the effects
-// of the plan; an absent effect is not a branch, it does not exist.
+// of the plan: an absent effect has no code at all, not even a branch.
 #include "shade/shade.h"
 
 #include <algorithm>
@@ -17,7 +17,7 @@
 namespace pocketray {
 namespace {
 
-// Effects by which paths go on from their first hits.
+// Effects by which paths continue beyond their first hits.
 constexpr EffectMask kGoesOn =
     bit(Effect::mirror) | bit(Effect::refraction) | bit(Effect::alpha_blend) | bit(Effect::back_face_culling);
 
@@ -37,10 +37,10 @@ struct Path<mask, true> {
   Vec3 weight;
   std::uint32_t depth;
   Media<mask> media;
-  float distance = 0;  // from the eye along the path, to its last surface
+  float distance = 0;  // along the path from the eye to its last surface
 };
 
-// The hit as surface functions take it, at the path's last surface.
+// The hit with the distance along the path, as surface functions expect it.
 template <EffectMask mask>
 Hit on_path(Hit hit, const Path<mask>& path) {
   if constexpr (has(mask, Effect::mip_map)) hit.t = path.distance;
@@ -50,11 +50,11 @@ Hit on_path(Hit hit, const Path<mask>& path) {
 template <EffectMask mask>
 Vec3 radiance(Tracer* tracer, const Ray& ray, const Path<mask>& path);
 
-// Whether a surface can both reflect and transmit, or has a coat that reflects besides.
+// True if a surface can both reflect and transmit, or has a reflecting coat as well.
 template <EffectMask mask>
 constexpr bool kBranches = has(mask, Effect::refraction) || has(mask, Effect::clear_coat);
 
-// Counts a ray that ends by the maximum depth, for which radiance `seen` stands in. What it would see is bounded for
+// Counts a ray ended by the maximum depth and replaced by radiance `seen`. Its true radiance is bounded for
 // kRayDepthMax further reflections and refractions.
 inline void end_ray(Tracer* tracer, float weight, const Vec3& seen) {
   ++tracer->rays_ended;
@@ -64,14 +64,14 @@ inline void end_ray(Tracer* tracer, float weight, const Vec3& seen) {
   if (weight > 0) tracer->branching.ended += weight * std::max(max_component(seen), bound - least);
 }
 
-// Whether the frame has an environment: --effects can force the effect on without one.
+// True if the frame has an environment: --effects can force the effect on without one.
 template <EffectMask mask>
 bool has_environment(const FrameData& frame) {
   if constexpr (has(mask, Effect::environment)) return environment_of(*frame.scene) != nullptr;
   return false;
 }
 
-// What a ray sees that hits nothing.
+// Radiance of a ray that hits nothing.
 template <EffectMask mask>
 Vec3 radiance_behind(const FrameData& frame, const Vec3& direction) {
   if (!has_environment<mask>(frame)) return frame.scene->info.background;
@@ -79,7 +79,7 @@ Vec3 radiance_behind(const FrameData& frame, const Vec3& direction) {
   return environment_radiance(*frame.scene, direction);
 }
 
-// Radiance along a spawned ray: zero if it could not matter, the surroundings' beyond the path's maximum depth.
+// Radiance along a spawned ray: zero if it cannot matter, the surroundings' radiance beyond the path's maximum depth.
 template <EffectMask mask>
 Vec3 spawn(Tracer* tracer, RayKind kind, const Surface& s, const Vec3& direction, float side, const Path<mask>& path,
            const Vec3& weight) {
@@ -99,7 +99,7 @@ Vec3 spawn(Tracer* tracer, RayKind kind, const Surface& s, const Vec3& direction
   return weight * radiance<mask>(tracer, {safe_origin(s, side), direction, __builtin_inff()}, next);
 }
 
-// The perfect mirror. If the normal would reflect the ray below the surface, the geometric normal is used.
+// Perfect mirror. If the normal would reflect the ray below the surface, the geometric normal is used.
 template <EffectMask mask>
 Vec3 mirror(Tracer* tracer, RayKind kind, const Ray& ray, const Surface& s, const Vec3& normal, const Path<mask>& path,
             const Vec3& weight) {
@@ -108,8 +108,8 @@ Vec3 mirror(Tracer* tracer, RayKind kind, const Ray& ray, const Surface& s, cons
   return spawn<mask>(tracer, kind, s, normalize(direction), 1, path, weight);
 }
 
-// A dielectric boundary: reflects by Fresnel; the rest is transmitted, refracted by Snell. What the surface reflects
-// besides, as a metal, shares the reflected ray: a tree of rays with two branches, not three.
+// A dielectric boundary: reflects by Fresnel; the rest is transmitted, refracted by Snell. A metallic reflection of the
+// surface shares the reflected ray, so that the tree of rays has two branches, not three.
 template <EffectMask mask>
 Vec3 dielectric(Tracer* tracer, const Ray& ray, const Surface& s, const Contact& contact, const Path<mask>& path,
                 const Vec3& mirrored) {
@@ -152,8 +152,8 @@ Vec3 dielectric(Tracer* tracer, const Ray& ray, const Surface& s, const Contact&
   return by_mirror + passed;
 }
 
-// What a coated surface mirrors and transmits: the base's reflected ray is the coat's, too, where they have one normal,
-// so that coated glass has two branches, not three.
+// Mirror reflection and transmission of a coated surface. Where base and coat have one normal, they share the reflected
+// ray, so that coated glass has two branches, not three.
 template <EffectMask mask>
 Vec3 pass_coat(Tracer* tracer, const Ray& ray, const Surface& s, const Material& m, const Contact* contact,
                const Path<mask>& path, const Vec3& mirrored) {
@@ -173,7 +173,7 @@ Vec3 pass_coat(Tracer* tracer, const Ray& ray, const Surface& s, const Material&
   return sum;
 }
 
-// Radiance that leaves the surface back along the ray; `m` has its lobes there.
+// Radiance leaving the surface back along the ray; `m` has the lobes at the point.
 template <EffectMask mask>
 inline Vec3 shade_lobes(Tracer* tracer, const Ray& ray, const Surface& s, const Material& m, const Contact* contact,
                         const Path<mask>& path) {
@@ -206,7 +206,7 @@ inline Vec3 shade_lobes(Tracer* tracer, const Ray& ray, const Surface& s, const 
   return sum;
 }
 
-// The same. `contact` is required if it transmits.
+// Radiance leaving the surface back along the ray. `contact` must be set if the material transmits.
 template <EffectMask mask>
 Vec3 shade(Tracer* tracer, const Ray& ray, const Surface& s, const Contact* contact, const Path<mask>& path) {
   if constexpr (has(mask, Effect::metallic_roughness) || has(mask, Effect::mip_map) || kHoldsRest<mask>) {
@@ -214,7 +214,7 @@ Vec3 shade(Tracer* tracer, const Ray& ray, const Surface& s, const Contact* cont
     Material mapped;
     const Material* m = s.material;
     if constexpr (has(mask, Effect::metallic_roughness)) m = &lobes_at(*tracer->frame, s, &mapped);
-    // reduced() has added them
+    // added to the mask by reduced(), not in the plan
     const bool shines = !has(plan, Effect::specular) && !is_zero(m->specular);
     const bool mirrors = !has(plan, Effect::mirror) && !is_zero(m->mirror);
     const bool transmits = kHoldsRest<mask> && !has(plan, Effect::refraction) && !is_zero(m->transmission);
@@ -231,14 +231,14 @@ Vec3 shade(Tracer* tracer, const Ray& ray, const Surface& s, const Contact* cont
   }
 }
 
-// Adds the light that first hits take with their tile to a surface that is none.
+// Adds tile lighting to a secondary hit.
 template <EffectMask mask>
 void add_later_light(Tracer* tracer, const Path<mask>& path, Surface* s) {
   if constexpr (has(kAllEffects, Effect::instant_radiosity) && (mask & kGoesOn) != 0)
     if (tracer->frame->add_later_light) tracer->frame->add_later_light(tracer, path.weight, s);
 }
 
-// Adds the blending surfaces of a contact, one over the other. False if whatever is behind them does not matter.
+// Adds the blending surfaces of a contact, one over the other. Returns false if nothing behind them matters.
 template <EffectMask mask>
 bool blend_layers(Tracer* tracer, const Ray& ray, const Contact& contact, Vec3* sum, Vec3* carried, Path<mask>* path) {
   const FrameData& frame = *tracer->frame;
@@ -269,8 +269,8 @@ bool blend_layers(Tracer* tracer, const Ray& ray, const Contact& contact, Vec3* 
   return !any || (most > 0 && !leave_out(tracer, most * frame.radiance_bounds.after[further]));
 }
 
-// The face that a ray meets behind the blending surfaces of a contact: an opaque one, else a body that it enters or
-// leaves, else a thin sheet; null if none.
+// Returns the face that a ray meets behind the blending surfaces of a contact: an opaque one, else a body that it
+// enters or leaves, else a thin sheet; null if there is none.
 const Face* face_behind_layers(const Scene& scene, const Contact& contact, EffectMask mask) {
   const Face *body = nullptr, *sheet = nullptr;
   for (std::uint32_t i = 0; i < contact.count; ++i) {
@@ -367,8 +367,8 @@ struct RadiancePart {
                                         Effect::metallic_roughness,
                                         Effect::mip_map,
                                         Effect::environment};
-  // No absorption without media; no distance along a path that ends at its first surface. With maps, footprints and
-  // environments, shade() leaves out the lobes that the plan does not have: fewer instances.
+  // Drops absorption without media, and distances along a path that ends at its first surface. With maps, footprints
+  // and environments, shade() skips lobes that the plan lacks at run time, which saves instances.
   static constexpr EffectMask reduced(EffectMask mask) {
     if (!has(mask, Effect::refraction)) mask &= ~bit(Effect::absorption);
     if (!(mask & kGoesOn)) mask &= ~bit(Effect::mip_map);
@@ -383,12 +383,12 @@ struct RadiancePart {
   }
 };
 
-// Effects of paths and lobes, for instances that look up the plan.
+// Effects of paths and lobes, for instances that check the plan at run time.
 constexpr EffectMask kHeldEffects = bit(Effect::specular) | bit(Effect::mirror) | bit(Effect::refraction) |
                                     bit(Effect::absorption) | bit(Effect::alpha_blend) | bit(Effect::back_face_culling);
 
-// Among many lights, everything else costs little: few instances hold the code of all effects but those that need more
-// of a surface, and look up the plan.
+// Among many lights, everything else costs little: few instances contain the code of all effects, except those that
+// need more of a surface, and check the plan at run time.
 struct SelectingRadiancePart {
   using Function = RadianceFunction;
   static constexpr Effect kEffects[] = {Effect::metallic_roughness, Effect::mip_map, Effect::environment};
@@ -399,7 +399,7 @@ struct SelectingRadiancePart {
   }
 };
 
-// The same for clear coats, which cost more than the looking up.
+// Few instances for clear coats as well, which cost more than checking.
 struct CoatedRadiancePart {
   using Function = RadianceFunction;
   static constexpr Effect kEffects[] = {Effect::shadow, Effect::mip_map, Effect::environment, Effect::source_selection};

@@ -4,7 +4,7 @@
 
 namespace pocketray {
 
-// Selects the instantiation for the plan's mask. The function returns the radiance that arrives along a camera ray.
+// Selects the instance for the plan's mask. The function returns the radiance that arrives along a camera ray.
 RadianceFunction find_radiance_function(EffectMask mask);
 
 }  // namespace pocketray

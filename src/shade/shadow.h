@@ -1,4 +1,4 @@
-// Shadow rays, and the light that passes what is transparent.
+// Shadow rays, and the light that transparent surfaces transmit.
 #pragma once
 #include <algorithm>
 
@@ -16,23 +16,23 @@
 
 namespace pocketray {
 
-// Whether an instance holds the code of nearly all effects: source selection and clear coats have few instances.
+// True if an instance contains the code of nearly all effects: source selection and clear coats have few instances.
 template <EffectMask mask>
 constexpr bool kHoldsRest = has(mask, Effect::source_selection) || has(mask, Effect::clear_coat);
 
-// The effects that are simulated.
+// The effects to simulate.
 template <EffectMask mask>
 constexpr EffectMask plan_of(const FrameData& frame) {
   if constexpr (kHoldsRest<mask>) return frame.mask;
   return mask;
 }
 
-// What the light that passes depends on: fewer instances.
+// Effects on which transmitted light depends; the others are dropped to save instances.
 constexpr EffectMask kPassageEffects = bit(Effect::refraction) | bit(Effect::absorption) | bit(Effect::alpha_blend) |
                                        bit(Effect::source_selection) | bit(Effect::clear_coat);
 
-// Whether to skip a contribution of at most `bound`: all that is skipped of a sample stays below half the narrowest
-// display level, so no pixel changes by more than one level.
+// Returns whether to skip a contribution of at most `bound`: the total skipped of a sample stays below half the
+// narrowest display level, so no pixel changes by more than one level.
 inline bool leave_out(Tracer* tracer, float bound) {
   if (!(bound <= tracer->skip_max)) return false;
   tracer->budget -= bound;
@@ -41,8 +41,8 @@ inline bool leave_out(Tracer* tracer, float bound) {
   return true;
 }
 
-// Transmittance of a contact for an unrefracted ray: Fresnel once, from the body that ends there to the one that begins
-// (air if none), times the tints of all bodies entered.
+// Transmittance of a contact for an unrefracted ray: Fresnel once, from the body that ends to the one that begins (air
+// if none), times the tints of all bodies entered.
 inline Vec3 interface_transmittance(const FrameData& frame, const Contact& contact, float cos_i) {
   Vec3 tint = {1, 1, 1};
   float from = 1, to = 1;
@@ -70,7 +70,7 @@ inline float optical_depth(float begin, float end, float open, float distance) {
 }
 
 // Transmittance of the transparent surfaces between the point and the light, without refraction, in order along the
-// ray: products of floats do not commute in the last bit, and every accelerator must give the same.
+// ray: products of floats do not commute in the last bit, and every accelerator must give equal results.
 template <EffectMask mask>
 Vec3 clear_transmittance(Tracer* tracer, Ray ray, const ShadowContext& context, bool at_first_hit) {
   const FrameData& frame = *tracer->frame;
@@ -139,7 +139,7 @@ inline Ray shadow_ray(const FrameData& frame, const Surface& s, const LightSampl
   return {below ? curved_origin(frame, s) : safe_origin(s, 1), sample.to_light, sample.t_max};
 }
 
-// As shadow(), if a tile does not know the result, or, with `passes`, knows that nothing opaque is in the way.
+// shadow() by tracing: the tile knows no result or, with `passes`, only that nothing opaque is in the way.
 template <EffectMask mask>
 [[gnu::noinline]] Vec3 traced_shadow(Tracer* tracer, const Surface& s, const LightRun& run, std::uint32_t light,
                                      const LightSample* known, bool at_first_hit, bool passes) {
@@ -147,7 +147,7 @@ template <EffectMask mask>
   const LightPoint* emitter = emitter_of(frame.lights[light]);
   bool blocked = false;
   if (!passes && emitter && frame.point_groups.groups.count) {
-    --tracer->rays[static_cast<int>(RayKind::shadow)];  // those that it traces are counted there
+    --tracer->rays[static_cast<int>(RayKind::shadow)];  // is_point_blocked() counts its own rays
     blocked = is_point_blocked(tracer, s, light, at_first_hit);
     passes = true;
   }
@@ -172,8 +172,8 @@ template <EffectMask mask>
   return {1, 1, 1};
 }
 
-// The fraction of frame.lights[light], one of the run's, that arrives: zero or one, or between if something transparent
-// is in the way. `sample` is the light's at the surface, or null.
+// Fraction of the light of frame.lights[light] (in the run) that arrives: zero or one, or between if something
+// transparent is in the way. `sample` is the light's sample at the surface, or null.
 template <EffectMask mask>
 [[gnu::always_inline]] inline Vec3 shadow(Tracer* tracer, const Surface& s, const LightRun& run, std::uint32_t light,
                                           const LightSample* sample, bool at_first_hit) {

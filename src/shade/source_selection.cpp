@@ -17,7 +17,7 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 constexpr std::uint16_t kEnd = 0xFFFF;
 
-// The number of an entry's list: greater bounds, and infinite ones, in later lists.
+// Index of an entry's list: greater bounds, including infinite ones, go to later lists.
 std::uint32_t strength_of(float most) { return float_bits(most) >> 22; }
 
 }  // namespace
@@ -85,7 +85,7 @@ void SourceSearch::add(const LightEntry& entry) {
   if (remaining_ > remaining_max_) remaining_max_ = remaining_;
 }
 
-// From the strongest to the weakest list.
+// Visits lists from the strongest to the weakest.
 template <class Visit>
 void SourceSearch::each_entry(Visit visit) const {
   for (std::uint32_t word = kListCount / 32; word-- > 0;)
@@ -110,12 +110,12 @@ void SourceSearch::add_light(std::uint32_t light, std::uint16_t run) {
   add(entry);
 }
 
-// The bound: all lights of the group at the point of its box nearest to the surface, at the steepest angle of any.
+// Its bound puts all lights of the group at the point of its box nearest to the surface, at their steepest angle.
 void SourceSearch::add_node(std::uint32_t index, std::uint16_t run) {
   const LightNode& node = frame_.light_tree.nodes[index];
   const Vec3 low = node.box.low - surface_.point, high = node.box.high - surface_.point, &n = surface_.normal;
   const Vec3 near = max(max(low, -high), Vec3{0, 0, 0}), above = max(n * low, n * high);
-  constexpr float kRounding = 1e-5f;  // chosen: some times the rounding of what follows
+  constexpr float kRounding = 1e-5f;  // chosen: several times the rounding error below
   const float height = above.x + above.y + above.z + kRounding * dot(abs(n), max(abs(low), abs(high)));
   if (!(height > 0)) return;
   const float square = dot(near, near);

@@ -1,9 +1,9 @@
-// Source selection: of many lights, those that deserve shadow rays [Kok91; Chen et al. 1991; both in Jansen92]. A
-// surface's lights are tested strongest first until what the others could add is within the tolerance [Ward91,
-// "Adaptive Shadow Testing for Ray Tracing"]; these are taken to be as visible as those tested. Groups of lights that
-// are far away or weak are bounded and estimated as one [Walter05, "Lightcuts", sec. 3], so that the cost grows slower
-// than the number of lights. The true sum and the result lie in the same interval: they differ by at most the tolerance
-// times the true sum, glow included, in the brightest channel.
+// Source selection: picks the lights that deserve shadow rays out of many [Kok91; Chen et al. 1991; both in Jansen92].
+// A surface's lights are tested strongest first until the rest could add no more than the tolerance [Ward91, "Adaptive
+// Shadow Testing for Ray Tracing"]; the rest is assumed to be as visible as the tested lights. Groups of lights that
+// are far away or weak are bounded and estimated as one [Walter05, "Lightcuts", sec. 3], so that the cost grows more
+// slowly than the number of lights. The true sum and the result lie in one interval: they differ by at most the
+// tolerance times the true sum, glow included, in the brightest channel.
 #pragma once
 #include "base/arena.h"
 #include "effect/effect_probe.h"
@@ -12,7 +12,7 @@
 
 namespace pocketray {
 
-// In a search, a node has no more than one entry, and so does a light.
+// In a search, each node and each light has at most one entry.
 static_assert(2 * kPointLightCountMax < 0xFFFF, "LightEntry::next");
 constexpr std::uint32_t search_entry_count(std::uint32_t light_points) { return 2 * light_points; }
 inline std::size_t selection_need(const Settings& settings, std::uint32_t light_points) {
@@ -21,25 +21,25 @@ inline std::size_t selection_need(const Settings& settings, std::uint32_t light_
          arena_need<LightEntry>(std::size_t(settings.threads) * search_entry_count(light_points));
 }
 
-// Finds the lights of a surface from the strongest to the weakest, to half an octave. Material `m` has the lobes there.
+// Finds a surface's lights from strongest to weakest, to half an octave. Material `m` has the lobes at the point.
 class SourceSearch {
  public:
   SourceSearch(Tracer* tracer, const Surface& surface, const Material& m, const Vec3& to_viewer);
-  // Upper bound of the sum of all lights not yet taken, in their brightest channels; may be infinite.
+  // Upper bound of the sum of all lights not yet taken, by brightest channels; may be infinite.
   double remaining() {
     if (unbounded_ > 0) return static_cast<double>(__builtin_inff());
     if (remaining_ < remaining_max_ * 0x1p-26) sum_up();  // half its bits are lost
     return remaining_;
   }
-  // Takes one of the strongest entries left. A light returns true; a group is divided into entries, and returns false.
+  // Takes one of the strongest remaining entries. Returns true for a light; splits a group and returns false.
   bool take(LightEntry* light);
   bool is_empty() const { return strengths_ == 0; }
-  // What the lights not taken contribute if nothing blocks them: an estimate for groups.
+  // Unblocked contribution of the lights not taken; an estimate for groups.
   Vec3 estimate() const;
 
  private:
-  // Entries in lists by the exponent and the first bit of the mantissa of their bound, marked if there are any; a mark
-  // for each word of marks that has any.
+  // Entries in lists by the exponent and first mantissa bit of their bound; marks show which lists have entries, and a
+  // second level shows which words of marks are set.
   static constexpr std::uint32_t kListCount = 512;
 
   void add_light(std::uint32_t light, std::uint16_t run);
@@ -62,11 +62,11 @@ class SourceSearch {
   std::uint16_t first_[kListCount];
   std::uint32_t marks_[kListCount / 32] = {};
   std::uint32_t strengths_ = 0;
-  double remaining_ = 0, remaining_max_ = 0;  // the sum, and the largest since it was summed up
+  double remaining_ = 0, remaining_max_ = 0;  // the current sum, and the largest since it was last computed
   std::uint32_t unbounded_ = 0;
 };
 
-// Fills the surfaces of a tile's first hits; no shadow ray is traced before its light is selected.
+// Fills in the surfaces of a tile's first hits; no shadow ray is traced before its light is selected.
 void find_tile_surfaces(Tracer* tracer, const RayPacket& rays, const Hit* hits, TileShadows* shadows);
 
 }  // namespace pocketray

@@ -9,7 +9,7 @@ namespace pocketray {
 constexpr std::uint32_t kTileSide = 8;
 static_assert(kTileSide * kTileRows == 64, "a tile's mask has 64 bits");
 
-// Places in a tile: bits of column and row by turns, the column's first.
+// Places in a tile: bits of column and row alternate, the column's first.
 constexpr std::uint32_t morton_column(std::uint32_t m) { return (m & 1) | (m >> 1 & 2) | (m >> 2 & 4); }
 constexpr std::uint32_t morton_row(std::uint32_t m) { return morton_column(m >> 1); }
 constexpr std::uint32_t morton_place(std::uint32_t column, std::uint32_t row) {
@@ -18,7 +18,7 @@ constexpr std::uint32_t morton_place(std::uint32_t column, std::uint32_t row) {
   return m;
 }
 
-// Columns of a packet in a strip of that many rows: several tiles side by side if they have few.
+// Columns of a packet in a strip of this many rows: several tiles side by side if there are few rows.
 constexpr std::uint32_t packet_columns(std::uint32_t row_count) { return kTileSide * (kTileRows / row_count); }
 
 struct TileStrip {
@@ -31,7 +31,7 @@ struct TileStrip {
 // Makes a strip of spans that lie within kTileRows rows of the first one's row, in any order. They may overlap.
 void make_strip(const Span* spans, std::uint32_t span_count, TileStrip* strip);
 
-// The same pixels by tiles at multiples of eight: up to two rows of these, across which the strip lies.
+// The strip's pixels regrouped into tiles aligned to multiples of eight; the strip spans up to two rows of these.
 struct AlignedTiles {
   std::uint32_t column, row;  // of the first tile's first pixel
   std::uint32_t tile_count;   // in each row

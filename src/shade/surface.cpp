@@ -163,7 +163,7 @@ struct GlowPart {
   }
 };
 
-// The same where textures use both sets of texture coordinates: fewer instances, which look textures up by
+// Parts for scenes whose textures use both sets of texture coordinates: fewer instances, which look textures up by
 // FrameData::color.
 constexpr EffectMask kSecond = bit(Effect::second_uv) | bit(Effect::texture);
 struct SecondSurfacePart {

@@ -14,25 +14,25 @@ struct SurfacePlace {
   std::uint32_t triangle;
 };
 
-// What a clear coat makes of a surface, see clear_coat.h.
+// Effect of a clear coat on a surface, see clear_coat.h.
 struct SurfaceCoat {
-  float passes;     // share of the base's light that it lets through; 1: there is no coat
+  float passes;     // fraction of the base's light that it transmits; 1: there is no coat
   float lobe;       // strength of its lobe; 0: none, or the plan has no glossy lobes
-  float mirror;     // its reflectance as a mirror; 0: none, or the plan has no mirrors
+  float mirror;     // mirror reflectance; 0: none, or the plan has no mirrors
   float roughness;  // set with a lobe
   Vec3 normal;      // unit
 };
 
-// Its normal, and the geometric one, are unit and on the side the ray came from.
+// The normal and the geometric normal are unit vectors on the side from which the ray came.
 struct Surface : LobeFrame {
   Vec3 point;
   Vec3 offset;  // from the point to a safe origin on the side the ray came from
   Vec3 geometric;
   Vec3 diffuse;            // albedo
-  Vec3 glow;               // radiance that leaves without any lights: emission, ambient; virtual lights add to it
+  Vec3 glow;               // radiance emitted without any lights: emission, ambient; virtual lights add to it
   bool front;              // the ray met the front (counter-clockwise) side
-  bool is_tinted;          // by `tint`, the colour of texture and vertices; otherwise that is not set
-  std::uint16_t metallic;  // of a metallic-roughness map, in 65535ths; not set without one, nor is the roughness
+  bool is_tinted;          // by `tint`, the colour of texture and vertices, which is set only then
+  std::uint16_t metallic;  // from a metallic-roughness map, in 65535ths; set with one only, like roughness
   Vec3 tint;
   const Material* material;
   float roughness;
@@ -41,29 +41,29 @@ struct Surface : LobeFrame {
   SurfaceCoat coat;      // set with Effect::clear_coat
 };
 
-// Whether the ray met the back of a one-sided surface. Glass bodies have both sides. Only visible surfaces are culled:
+// True if the ray met the back of a one-sided surface. Glass bodies have both sides. Only visible surfaces are culled:
 // a one-sided surface casts its shadow whichever side the light is on.
 inline bool is_culled(const Material& m, bool front) { return !front && !m.double_sided && is_zero(m.transmission); }
 
-// Whether two surfaces of the same frame are the same in every respect.
+// True if two surfaces of one frame are equal in every respect.
 inline bool same_surface(const Surface& a, const Surface& b) {
   return a.hit.triangle == b.hit.triangle && a.hit.u == b.hit.u && a.hit.v == b.hit.v && a.front == b.front;
 }
 
-// The material's specular or mirror reflectance at the surface, given the part of it that is tinted.
+// Specular or mirror reflectance of the material at the surface, given the tinted part of it.
 inline Vec3 reflectance_at(const Surface& s, const Vec3& reflectance, const Vec3& tinted) {
   return s.is_tinted ? reflectance - tinted * (Vec3{1, 1, 1} - s.tint) : reflectance;
 }
 
-// The material's glossy lobe at the surface, with its grain where it has one (Effect::anisotropy).
+// The material's glossy lobe at the surface, with its grain if it has one (Effect::anisotropy).
 inline const BrdfInfo& lobe_at(const FrameData& frame, const Surface& s, const Material& m) {
   const BrdfInfo* lobe = kBrdfList[m.brdf];
   return has(frame.mask, Effect::anisotropy) && lobe->with_grain && !is_zero(s.grain) ? *lobe->with_grain : *lobe;
 }
 
-// Selects the instantiation for the plan's mask.
+// Selects the instance for the plan's mask.
 SurfaceFunction find_surface_function(EffectMask mask);
-// The part of it that sets Surface::glow.
+// Selects the function that sets Surface::glow alone.
 GlowFunction find_glow_function(EffectMask mask);
 
 // Distance from a computed point to a ray origin that no rounding error puts on the wrong side. Each coordinate of the
@@ -89,7 +89,7 @@ inline Vec3 safe_origin(const Surface& s, float side) {
           away_from(s.point.z, s.offset.z * side)};
 }
 
-// Whether a light is below the plane of the triangle. It may still light the curved surface that the normals describe.
+// True if a light is below the plane of the triangle. It may still light the curved surface described by the normals.
 inline bool is_below(const Surface& s, const Vec3& to_light) { return !(dot(s.geometric, to_light) > 0); }
 
 // Origin of a shadow ray that starts below the flat triangle but above the curved surface that the vertex normals

@@ -11,13 +11,13 @@
 namespace pocketray {
 namespace {
 
-// In texels, clamped where a float no longer has a fraction: the difference of two infinities would be NaN.
+// Texel coordinate, clamped where a float no longer has a fraction: the difference of two infinities would be NaN.
 float texel_coordinate(float u, int size) {
   float x = u * static_cast<float>(size);
   return x < 1e9f ? (x > -1e9f ? x : -1e9f) : 1e9f;
 }
 
-// The greatest integer not above x, |x| ≤ 1e9.
+// Floor of x, |x| ≤ 1e9.
 int floor_of(float x) {
   const int i = static_cast<int>(x);
   return static_cast<float>(i) > x ? i - 1 : i;
@@ -40,7 +40,7 @@ struct Level {
   TexelFormat format;
 };
 
-// The two ways to a texel.
+// The two formats of texels.
 struct ExactTexels {
   static std::uint32_t words(const Texture& t, std::uint32_t level_count) {
     return level_texels(t.width, t.height, level_count);
@@ -104,7 +104,7 @@ struct NumberTexel {
   }
 };
 
-// Of the set that a texture reads, if some texture may read the second one.
+// Coordinates from the set that the texture reads, if any texture may read the second one.
 template <bool both_sets>
 Vec2 uv_at(const Scene& scene, const TextureUse& use, const Surface& s) {
   if constexpr (both_sets) return texture_uv(scene, use, s.hit.triangle, s.hit.u, s.hit.v);
@@ -142,7 +142,7 @@ auto bilinear(const Level& level, Vec2 uv) {
   return blend(blend(at(x0, y0), at(x1, y0), fx), blend(at(x0, y1), at(x1, y1), fx), fy);
 }
 
-// Of level 0.
+// Samples level 0.
 template <class Texel, class Texels>
 auto sample_base(const Scene& scene, const Texture& t, Vec2 place, TextureFilter filter) {
   const Level level = level_of<Texels>(scene, t, 0);
@@ -150,8 +150,8 @@ auto sample_base(const Scene& scene, const Texture& t, Vec2 place, TextureFilter
   return takes_nearest ? nearest<Texel, Texels>(level, place) : bilinear<Texel, Texels>(level, place);
 }
 
-// Between the levels next to lambda ≥ 0. One level alone for the quarter of its octave on either side; in between, a
-// mix, twice as steep.
+// Samples between the levels around lambda ≥ 0: a single level within a quarter of an octave of it, in between a mix,
+// twice as steep.
 template <class Texel, class Texels>
 auto sample_levels(const Scene& scene, const Texture& t, Vec2 place, float lambda) {
   const std::uint32_t last = t.level_count - 1u;
@@ -183,8 +183,8 @@ auto sample_level(const Scene& scene, const Texture& t, Vec2 place, float lambda
                                         : sample_levels<Texel, BlockTexels>(scene, t, place, lambda);
 }
 
-// The number of places for a footprint of that area, in texels, and axis: as many as it is longer than wide, but no
-// more than it has texels along the axis.
+// Number of lookups for a footprint of this area, in texels, and axis: the ratio of its length to its width, but no
+// more than the texels along the axis.
 int place_count(float area, float axis_square) {
   constexpr int kMost = 4;
   int count = 1;
@@ -194,7 +194,7 @@ int place_count(float area, float axis_square) {
   return count;
 }
 
-// The mean of places along the axis of the footprint, each with its share of the area.
+// Mean of lookups along the axis of the footprint, each for an equal part of the area.
 template <class Texel>
 auto sample_along_axis(const Scene& scene, const TextureUse& use, Vec2 uv, float area, const Vec2& axis) {
   const Texture& t = scene.textures[use.texture];

@@ -1,4 +1,4 @@
-// Texture look-ups. Texels are sRGB bytes; a look-up returns linear colour and alpha.
+// Texture lookups. Texels are sRGB bytes; a lookup returns linear colour and alpha.
 #pragma once
 #include "effect/effect_probe.h"
 #include "shade/frame_data.h"
@@ -10,20 +10,20 @@ struct Rgba {
   float alpha;
 };
 
-// The colour of `use` at uv. Coordinates wrap as in the texture's sampler; row 0 is at v = 0.
+// Colour of `use` at uv. Coordinates wrap as the texture's sampler says; row 0 is at v = 0.
 Rgba sample_texture(const Scene& scene, const TextureUse& use, Vec2 uv, TextureFilter filter);
-// The same, filtered for a footprint where the texture has levels (Effect::mip_map): between two levels, each bilinear;
-// with the filter anisotropic, the mean of up to four places along the footprint's axis. With the filters nearest and
-// bilinear, level 0 as above.
+// Colour filtered for a footprint if the texture has levels (Effect::mip_map): between two levels, each bilinear; with
+// the filter anisotropic, the mean of up to four lookups along the footprint's axis. The filters nearest and bilinear
+// read level 0, as above.
 Rgba sample_texture(const Scene& scene, const TextureUse& use, Vec2 uv, TextureFilter filter,
                     const Footprint& footprint);
 
-// The same of a texture of numbers: texel bytes R, G, B as they are, 0 to 255.
+// Value of a texture of numbers: texel bytes R, G, B as they are, 0 to 255.
 Vec3 sample_numbers(const Scene& scene, const TextureUse& use, Vec2 uv, TextureFilter filter);
 Vec3 sample_numbers(const Scene& scene, const TextureUse& use, Vec2 uv, TextureFilter filter,
                     const Footprint& footprint);
 
-// The one of the two that the plan calls for.
+// Calls whichever of the two the plan needs.
 template <bool has_levels>
 Rgba color_at(const Scene& scene, const TextureUse& use, Vec2 uv, TextureFilter filter, const Footprint& footprint) {
   if constexpr (has_levels) return sample_texture(scene, use, uv, filter, footprint);
@@ -46,7 +46,7 @@ inline Vec2 hit_uv(const Scene& scene, std::uint32_t triangle, float u, float v)
   return hit_uv(scene, scene.uvs, triangle, u, v);
 }
 
-// The same of the set that a texture reads (Effect::second_uv).
+// Returns whether a texture reads the second set of coordinates (Effect::second_uv).
 inline bool reads_second_uvs(const Scene& scene, const TextureUse& use) {
   return scene.textures[use.texture].uv_set > 0;
 }
@@ -56,11 +56,11 @@ inline Vec2 texture_uv(const Scene& scene, const TextureUse& use, std::uint32_t 
   return hit_uv(scene, scene.second_uvs, triangle, u, v);
 }
 
-// Alpha of a material at a hit: opacity × texture alpha × vertex alpha. For a plan's mask.
+// Alpha of a material at a hit: opacity × texture alpha × vertex alpha. Selected for a plan's mask.
 AlphaFunction find_alpha_function(EffectMask mask);
 
-// The same, for the effect in question: alpha_mask or alpha_blend. Without footprints, as for holes and shadows, of
-// level 0: means would fill or widen holes with the distance, and a surface and its shadow would differ.
+// Alpha for alpha_mask or alpha_blend. Holes and shadows have no footprint and read level 0: means would fill or widen
+// holes with distance, and a surface and its shadow would differ.
 template <Effect effect>
 float hit_alpha(const FrameData& frame, const Material& material, std::uint32_t triangle, float u, float v,
                 const Footprints& footprints = kNoFootprints) {

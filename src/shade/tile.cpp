@@ -10,7 +10,7 @@
 namespace pocketray {
 namespace {
 
-// The directions of camera_ray() for a tile's pixels, with what neighbours share computed once.
+// Sets the directions of camera_ray() for a tile's pixels; what columns or rows share is computed once.
 void set_directions(const CameraRays& camera, const Tile& tile, const Vec2& offset, RayPacket* packet) {
   constexpr std::uint32_t kKept = 8;  // columns and rows of a full tile
   constexpr std::uint32_t kNone = 0xFFFFFFFF;

@@ -19,14 +19,14 @@ inline void add_pixel(std::uint32_t column, std::uint32_t row, Tile* tile) {
 // the patches that temporal coherence traces: these take 1 % fewer instructions with 8, 8 % more with 33.
 constexpr std::uint32_t kPacketRaysMin = kPacketMax / 4;
 
-// For a RayObserver.
+// Reports a pixel to a RayObserver.
 void observe_pixel(Tracer* tracer, std::uint32_t column, std::uint32_t row);
 
-// Into FrameData::first_hits, which is there; or what the window wants of the hit.
+// Stores a hit in FrameData::first_hits, which must exist, or what the window needs of it.
 void keep_first_hit(Tracer* tracer, std::uint32_t sample, std::uint32_t column, std::uint32_t row, const Hit& hit);
 
-// The mean of the pixel's samples. `first`, unless null, receives the surface at the first sample's first hit; its
-// material is null if there is none.
+// Mean of the pixel's samples. `first`, unless null, receives the surface at the first sample's first hit; its material
+// is null if there is none.
 Vec3 pixel_radiance(Tracer* tracer, std::uint32_t column, std::uint32_t row, Surface* first = nullptr);
 
 // Traces the pixels of a tile of a perspective picture in packets.

@@ -7,18 +7,18 @@
 namespace pocketray {
 namespace {
 
-// A lamp as seen from a tile's first hits. Pixels are bits.
+// A lamp as seen from a tile's first hits. Masks have a bit per pixel.
 struct TileLamp {
   const LightRun& run;
-  std::uint32_t first;  // of its points
-  KnownViews views;     // of its polygon; those that it surely lights up see it whole
+  std::uint32_t first;  // its first light point
+  KnownViews views;     // of its polygon; pixels that it surely lights up see all of it
 
   std::uint32_t number(const FrameData& frame) const {
     return (first - run.begin) / frame.settings.points_per_area_light;
   }
 };
 
-// Views of the lamp's polygon, if it has one.
+// Computes the pixels' views of the lamp's polygon, if it has one.
 void find_views(const FrameData& frame, const TileReceivers& receivers, TileLamp* lamp, TileShadows* shadows) {
   const std::uint32_t number = lamp->number(frame);
   if (!lamp->run.polygons || number >= kTilePolygonMax) return;
@@ -43,7 +43,7 @@ void find_views(const FrameData& frame, const TileReceivers& receivers, TileLamp
   }
 }
 
-// The pixels of `open`, from which all points of the lamp are seen, and of `blocked`, from which none is.
+// Keeps the pixels that see all points of the lamp (`open`) and those that see none (`blocked`).
 void keep_common(const FrameData& frame, const TileLamp& lamp, std::uint64_t open, std::uint64_t blocked,
                  TileShadows* shadows) {
   const std::uint32_t number = lamp.number(frame);
@@ -52,7 +52,7 @@ void keep_common(const FrameData& frame, const TileLamp& lamp, std::uint64_t ope
   shadows->polygons[number].blocked = mask_of(blocked & bits_of(lamp.views.matter));
 }
 
-// A light of few points, each tested.
+// Tests each point of a lamp that has few.
 void trace_points(Tracer* tracer, const TileLamp& lamp, const TileReceivers& receivers, TileShadows* shadows) {
   const FrameData& frame = *tracer->frame;
   const std::uint32_t end = std::min(lamp.first + frame.settings.points_per_area_light, kTileLightMax);
@@ -65,7 +65,7 @@ void trace_points(Tracer* tracer, const TileLamp& lamp, const TileReceivers& rec
   if (end == lamp.first + frame.settings.points_per_area_light) keep_common(frame, lamp, ~any, all, shadows);
 }
 
-// The points of one area light as seen from a tile's first hits: what is_point_blocked() finds, for all at once.
+// The points of one area light as seen from a tile's first hits: is_point_blocked() for all pixels at once.
 class TilePoints {
  public:
   TilePoints(Tracer* tracer, const TileLamp& lamp, const TileReceivers& receivers, TileShadows* shadows)
@@ -82,7 +82,7 @@ class TilePoints {
     packet_.count = 0;
   }
 
-  // Of a light whose last points exceed kTileLightMax, only which pixels it lights up.
+  // For a light whose last points exceed kTileLightMax, finds only which pixels it lights up.
   void find() {
     const std::uint32_t all = frame_.point_groups.points_of_light, count = std::min(all, kTileLightMax - first_);
     std::uint64_t matter = bits_of(lamp_.views.matter), open = ~std::uint64_t(0), blocked = open;
@@ -100,7 +100,7 @@ class TilePoints {
  private:
   static constexpr int kTogetherMax = 12;  // pixels; their rays to all probes fill a packet
 
-  // The pixels that it lights up, and those from which it is a probe; returns those to which it matters.
+  // Finds the pixels lit by the point and those for which it is a probe; returns those to which it matters.
   std::uint64_t find_probes(std::uint32_t point) {
     const std::uint32_t light = first_ + point;
     TileMask lit = {};
@@ -122,7 +122,7 @@ class TilePoints {
     return matter;
   }
 
-  // Adds the rays of pixels from which the point is a probe to the packet, unless their result is known.
+  // Adds the rays to a point to the packet, for pixels that probe it and do not know the result.
   void add_rays(std::uint32_t point, std::uint64_t pixels) {
     const std::uint64_t fresh = pixels & probes_[point] & ~known_[point];
     const Vec3& position = frame_.lights[first_ + point].position;
@@ -136,7 +136,7 @@ class TilePoints {
       set_ray(&packet_, packet_.count++, {receivers_.origin[place], position - shadows_->surface[place].point, 1});
     }
   }
-  // The rays of a packet end at points of one plane, whose triangles do not hide them.
+  // Flushes the packet if the point is in another plane: its rays end in one plane, whose triangles do not block them.
   void begin_point(const LightPoint& light) {
     const bool same = packet_.count == 0 || (dot(light.direction, light_->direction) > 1 - 0x1p-16f &&
                                              is_in_plane(*light_, light.position));
@@ -189,8 +189,8 @@ class TilePoints {
   const PointGroup* groups_;
   const std::uint8_t* order_;
   SegmentPacket packet_;
-  const LightPoint* light_;  // at which a ray of the packet ends
-  std::uint8_t pixel_[kPacketMax], point_[kPacketMax];                                   // of its rays
+  const LightPoint* light_;  // end of the packet's rays
+  std::uint8_t pixel_[kPacketMax], point_[kPacketMax];                                   // by ray
   std::uint64_t probes_[kTileLightMax], known_[kTileLightMax], blocked_[kTileLightMax];  // by point
 };
 

@@ -12,8 +12,8 @@ inline bool receives(const FrameData& frame, const Surface& s) {
   return !(is_zero(s.diffuse) && is_zero(s.material->specular)) || shines_by_coat(frame, s);
 }
 
-// Whether direct_light() will probably skip light of that irradiance, or the ray to a sample; highlights are not
-// estimated.
+// True if direct_light() will probably skip light of that irradiance, or the ray to a sample; ignores
+// highlights.
 [[gnu::always_inline]] inline bool cannot_matter(const FrameData& frame, const Surface& s, const Vec3& irradiance) {
   if (!is_zero(s.material->specular)) return false;
   return max_component(s.diffuse * (1 / kPiF) * irradiance) <= frame.left_out_max && !shines_by_coat(frame, s);
@@ -24,7 +24,7 @@ inline bool receives(const FrameData& frame, const Surface& s) {
   return max_component(most) <= frame.left_out_max && !shines_by_coat(frame, s);
 }
 
-// The pixels whose first hits receive light, and the origins of their shadow rays, by pixel.
+// Pixels whose first hits receive light, and the origins of their shadow rays, by pixel.
 struct TileReceivers {
   std::uint32_t count = 0;
   std::uint8_t pixel[kPacketMax];
@@ -34,16 +34,16 @@ struct TileReceivers {
 void find_receivers(const FrameData& frame, const RayPacket& rays, const Hit* hits, TileShadows* shadows,
                     TileReceivers* receivers);
 
-// Which of the shadow rays to an area light something opaque blocks, or to another one (kNone): bit i is ray i.
+// Returns which rays to an area light (or, with null, to another light) something opaque blocks: bit i for ray i.
 std::uint64_t trace_packet(Tracer* tracer, const SegmentPacket& packet, const LightPoint* emitter);
 
-// Pixels whose view of a light is known: that it surely lights them up, that it does not; and of the first, those to
-// which it matters.
+// Pixels with a known view of a light: those that it surely lights (lit), does not light (unlit), and those of the
+// former to which it matters.
 struct KnownViews {
   TileMask lit, unlit, matter;
 };
 
-// Traces the shadow rays to frame.lights[i], one of the run's. Inline, as most lights have no known views.
+// Traces the shadow rays to frame.lights[i], in the run. Inline, because most lights have no known views.
 [[gnu::always_inline]] inline void trace_light(Tracer* tracer, const LightRun& run, std::uint32_t i,
                                                const TileReceivers& receivers, const KnownViews* views,
                                                TileShadows* shadows) {

@@ -58,7 +58,7 @@ void trace_pixels(Tracer* tracer, const Tile& tile, std::uint32_t pitch, const P
     image.at(tile.column[i], tile.row[i]) = pixel_radiance(tracer, tile.column[i], tile.row[i]);
 }
 
-// Tiles with few rows share a packet with the tiles beside them, up to 64 pixels. Other tiles do not, however few their
+// Tiles with few rows share a packet with adjacent tiles, up to 64 pixels. Other tiles do not, even if they have few
 // pixels: rays that are far apart have no boxes in common.
 void trace_strip(Tracer* tracer, const TileStrip& strip, std::uint32_t pitch, const PixelRows& image) {
   if (strip.tile_count == 0) return;
@@ -72,7 +72,7 @@ void trace_strip(Tracer* tracer, const TileStrip& strip, std::uint32_t pitch, co
   }
 }
 
-// Pixels of a coarse grid that are traced in blocks, each with its own block.
+// Traces pixels of a coarse grid in blocks, each pixel with its own block.
 void trace_blocks(Tracer* tracer, const Span& span, std::uint32_t pitch, const PixelRows& image) {
   const auto row = static_cast<std::uint16_t>(span.row * pitch);
   for (std::uint32_t x = span.column_begin * pitch; x < span.column_end * pitch; x += pitch) {
@@ -83,7 +83,7 @@ void trace_blocks(Tracer* tracer, const Span& span, std::uint32_t pitch, const P
   }
 }
 
-// Ray by ray, when rays share no origin or each is inspected separately.
+// Traces ray by ray, when rays share no origin or each is inspected separately.
 void trace_span(Tracer* tracer, const Span& span, std::uint32_t pitch, Aov aov, const PixelRows& image) {
   const std::uint32_t row = span.row * pitch;
   for (std::uint32_t column = span.column_begin * pitch; column < span.column_end * pitch; column += pitch)

@@ -9,22 +9,22 @@ namespace pocketray {
 // position: in the model's own coordinates, zero where nothing is hit.
 enum class Aov { none, depth, normal, triangle, position, cost, indirect_light };
 
-// A tracer for the frame.
+// Creates a tracer for the frame.
 Tracer make_tracer(const FrameData& frame);
 
 // Spans are best passed in groups: those within this many rows are traced in tiles of up to 8 × 8 pixels, whichever
 // pixels they contain. The picture does not depend on the grouping.
 constexpr std::uint32_t kTileRows = 8;
-// The number of every `pitch`-th pixels along a side.
+// Number of every `pitch`-th pixels along a side.
 constexpr std::uint32_t grid_side(std::uint32_t side, std::uint32_t pitch) { return (side + pitch - 1) / pitch; }
-// The number of leading spans that lie within kTileRows rows of the first one's row.
+// Number of leading spans that lie within kTileRows rows of the first one's row.
 std::uint32_t strip_span_count(const Span* spans, std::uint32_t span_count);
 
 // Traces the spans into `image`: width × height linear radiances, row 0 on top, indexed as the whole frame. Rows and
-// columns of the spans count every `pitch`-th one of the picture: those of a grid, from its first pixel on. With an
-// AOV: depth is the distance along the ray (0 without a hit), normal the world-space shading normal, triangle the id +
-// 1 (0: none), cost the number of boxes and triangles visited by all rays of the pixel, each traced separately; scalars
-// fill all three channels; indirect_light as in indirect_light.h.
+// columns of the spans count every `pitch`-th one of the picture, from its first pixel on. AOVs: depth is the distance
+// along the ray (0 without a hit), normal the world-space shading normal, triangle the id + 1 (0: none), cost the
+// number of boxes and triangles visited by all rays of the pixel, each traced separately; scalars fill all three
+// channels; indirect_light as in indirect_light.h.
 void trace_spans(Tracer* tracer, const Span* spans, std::uint32_t span_count, Aov aov, Vec3* image,
                  std::uint32_t pitch = 1);
 

@@ -1,4 +1,4 @@
-// Virtual lights with shadows: at first hits, interleaved, and behind them.
+// Virtual lights with shadows: interleaved at first hits, traced in full at secondary hits.
 #include "shade/virtual_light.h"
 
 #include "base/fmath.h"
@@ -18,7 +18,7 @@ struct ListedIndices {
 };
 
 struct VirtualSource {
-  // Chosen: without a tolerance, a quarter of the rays are spared, and ꟻLIP against full transport changes by less than
+  // Chosen: without a tolerance, saves a quarter of the rays, and ꟻLIP against full transport changes by less than
   // .003.
   static constexpr float kFaint = 0.5f;
   const VirtualLights& lights;
@@ -37,8 +37,8 @@ struct VirtualSource {
   }
 };
 
-// A pixel has a sixteenth of the lights, so that a group may have sixteen times the tolerance of their light: one ray
-// or two by default. See tests/indirect/FIGURES.md.
+// A pixel has a sixteenth of the lights, so a group may hold sixteen times the tolerance of their light: one ray or two
+// by default. See tests/indirect/FIGURES.md.
 VirtualSource source_of(const FrameData& frame) {
   const VirtualLights& lights = *virtual_lights_of(frame.indirect);
   return {lights, lights.first_geometry_max, frame.settings.light_tolerance * kPatternPixels};
@@ -71,7 +71,7 @@ Vec3 irradiance(const FrameData& frame, const Vec3& point, const Vec3& normal, c
   const VirtualLights& lights = *virtual_lights_of(frame.indirect);
   CHECK_GT(sum.pixel_count, 0u);
   Vec3 result = sum.lit * (static_cast<float>(kPatternPixels) / static_cast<float>(sum.pixel_count));
-  if (are_few) {  // all lights, by the mean visibility of those traced, and compensated as these
+  if (are_few) {  // all lights, by the mean visibility of the traced ones, and compensated like them
     result = virtual_irradiance(lights, lights.first_geometry_max, point, normal);
     for (int c = 0; c < 3; ++c) result[c] *= sum.open[c] > 0 ? sum.lit[c] / sum.open[c] : 1;
   }

@@ -16,7 +16,7 @@ bool meets_change_neon(const MovingGeometry& moving, const BoundedBeam& beam);
 
 inline namespace POCKETRAY_ISA {
 
-// Which triangles of a leaf have changed, a bit each.
+// Mask of a leaf's triangles that have changed.
 inline unsigned changed_lanes(const MovingGeometry& m, const TriangleBlock& leaf, std::uint32_t count) {
   unsigned changed = 0;
   for (std::uint32_t k = 0; k < count; ++k)

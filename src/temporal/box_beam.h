@@ -7,10 +7,10 @@
 
 namespace pocketray {
 
-// A beam prepared for tests against boxes within some bounds.
+// A beam prepared for tests against boxes within given bounds.
 struct BoxBeam {
-  // The beam's planes, low and high of each axis: slope·t ≤ limit of a box, as t ≤ or ≥ limit · inverse by the slope's
-  // sign, or, for slope 0, 0 ≤ limit.
+  // The beam's planes, low and high of each axis: slope·t ≤ limit of a box, written as t ≤ or ≥ limit · inverse
+  // depending on the slope's sign, or, for slope 0, 0 ≤ limit.
   float low[3], high[3], inverse[6];
   int sign[6];
   float t_max;
@@ -37,9 +37,9 @@ inline BoxBeam make_box_beam(const Beam& beam, const Box& bounds) {
 
 inline namespace POCKETRAY_ISA {
 
-// Which of four pairs of boxes have a box around both that a ray of the beam can meet: those for which there is a t at
-// which the beam's box and it overlap. These are six linear inequalities, so no ray that meets a box is missed. (Where
-// a product is not a number, the bound stays.)
+// Mask of the four pairs of boxes whose common bounds a ray of the beam can meet: there must be a t at which the beam's
+// box overlaps them. These are six linear inequalities, so no ray that meets a box is missed. (If a product is not a
+// number, the bound stays.)
 inline unsigned meets_both(const BoxBeam& b, const float (&one)[6][4], const float (&other)[6][4]) {
   Float4 begin = Float4::splat(0), end = Float4::splat(b.t_max), zero = begin;
   Mask4 inside = zero <= zero;

@@ -10,11 +10,11 @@
 namespace pocketray {
 namespace {
 
-// Effects whose rays go on from the first hit.
+// Effects whose rays continue from the first hit.
 constexpr EffectMask kGoingOn =
     bit(Effect::mirror) | bit(Effect::refraction) | bit(Effect::alpha_blend) | bit(Effect::back_face_culling);
 
-constexpr std::uint32_t kSpanRows = 4;  // of tiles, however ragged; usually a whole frame's spans fit
+constexpr std::uint32_t kSpanRows = 4;  // of tiles; even ragged spans of a whole frame usually fit
 
 bool keeps_tables(EffectMask mask, const CoherencePlan& plan) {
   return plan.tables_only || (mask & kEffectsBuilt & kGoingOn) != 0;
@@ -133,12 +133,12 @@ bool follow_frame(Coherence* c, const FrameData& frame, const char** why) {
   bool lights_changed =
       !*why && (differ(c->lights.data, frame.lights) || differ(c->light_polygons.data, frame.light_polygons));
   if (lights_changed && has(frame.mask, Effect::source_selection)) {
-    *why = "a light changed, and with it the selection of the others";
+    *why = "a light changed; light selection is recomputed";
     lights_changed = false;
   }
   const bool is_compensated = pocketray::is_compensated(frame.settings, frame.mask);
   if (!*why && is_compensated && (lights_changed || c->recoloring.any)) {
-    *why = "a light or a surface changed, and with it what compensation finds";
+    *why = "a light or material changed; compensation is recomputed";
     lights_changed = false;
   }
   c->search = {&frame,
@@ -179,7 +179,7 @@ bool is_unchanged(const Coherence& c) { return !c.moving.changed && !c.search.li
 
 namespace {
 
-// Every pixel of the tile whose block is dirty, and after a change of lights every pixel.
+// Every pixel of the tile whose block is dirty; after a change of lights, every pixel.
 std::uint64_t find_blocks(const Coherence& c, std::uint32_t tile) {
   const std::uint32_t column = tile % c.tile_columns * kChangeTileSide, row = tile / c.tile_columns * kChangeTileSide;
   std::uint64_t found = 0;
@@ -190,7 +190,7 @@ std::uint64_t find_blocks(const Coherence& c, std::uint32_t tile) {
   return found;
 }
 
-// Of a tile, bit 8·y + x for each pixel of a known row, with bits for rows below the picture.
+// Mask of a tile's pixels in known rows, bit 8·y + x, including rows below the picture.
 std::uint64_t known_pixels(const Coherence& c, std::uint32_t tile_row) {
   std::uint64_t known = ~std::uint64_t(0);
   for (std::uint32_t y = 0, row = tile_row * kChangeTileSide; y < kChangeTileSide && row < c.plan.height; ++y, ++row)
@@ -198,7 +198,7 @@ std::uint64_t known_pixels(const Coherence& c, std::uint32_t tile_row) {
   return known;
 }
 
-// The columns of the tile that lie in the picture, in each row.
+// Mask of the tile's columns within the picture, in each row.
 std::uint64_t pixels_in_picture(const Coherence& c, std::uint32_t tile) {
   const std::uint32_t columns = c.plan.width - tile % c.tile_columns * kChangeTileSide;
   return 0x0101010101010101 * (columns < kChangeTileSide ? 0xFFu >> (kChangeTileSide - columns) : 0xFFu);
@@ -235,7 +235,7 @@ void spread_changes(Coherence* c) {
     const std::uint32_t left = tile % c->tile_columns * kChangeTileSide, top = tile / c->tile_columns * kChangeTileSide;
     for (std::uint64_t rest = c->given[tile]; rest; rest &= rest - 1) {
       const auto i = static_cast<std::uint32_t>(__builtin_ctzll(rest));
-      // The pixels that take light from it.
+      // The pixels that take light from this one.
       const std::uint32_t column = left + i % kChangeTileSide, row = top + i / kChangeTileSide;
       for (std::uint32_t y = row - std::min(row, kTakenAfter); y <= row + kTakenBefore && y < c->plan.height; ++y)
         for (std::uint32_t x = column - std::min(column, kTakenAfter); x <= column + kTakenBefore && x < c->plan.width;
@@ -266,7 +266,7 @@ void clear_changes(Coherence* c) {
 void start_recording(Coherence* c, FrameData* frame, Array<Tracer> tracers) {
   CHECK_LE(tracers.count, c->plan.threads);
   CHECK_LE(frame->settings.samples_per_pixel, c->plan.samples);
-  CHECK(frame->accel_info != &c->observed);  // it would ask itself
+  CHECK(frame->accel_info != &c->observed);  // else it would call itself
   if (!c->plan.tables_only) frame->first_hits = c->first_hits.data;
   if (is_compensated(frame->settings, frame->mask)) frame->compensation_paths = c->paths.data;
   if (c->tables.words.empty()) return;

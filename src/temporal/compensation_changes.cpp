@@ -1,6 +1,6 @@
-// Rays of compensation that meet something else than in the last frame, or find it in other shadows. Where they end is
-// kept, so that narrow beams enclose them: a beam that meets no change rules out its ray, and what meets one is traced
-// again.
+// Finds rays of compensation that meet something different than in the last frame, or find it in different shadow.
+// Their ends are kept, so that narrow beams enclose them: a beam that meets no change rules out its ray, and rays that
+// meet one are traced again.
 #include <algorithm>
 
 #include "base/check.h"
@@ -9,13 +9,13 @@
 namespace pocketray {
 namespace {
 
-// Rays from some points to some ends. Both are as far off as shadow rays may start from their points.
+// Beam of rays from points to ends; both may be offset as far as shadow rays may start from their points.
 Beam path_beam(const Box& points, const Box& ends, float room) {
   const Vec3 around = {room, room, room};
   return {points.low - around, points.high + around, ends.low - points.low, ends.high - points.high, 1};
 }
 
-// How far from a ray's end a shadow ray may start, in each coordinate, as in measure_tile().
+// Largest offset of a shadow ray from a ray's end, in each coordinate, as in measure_tile().
 float room_at_end(const FrameData& frame) {
   return max_component(max(abs(frame.accel.bounds.low), abs(frame.accel.bounds.high))) * 0x1p-15f;
 }

@@ -1,5 +1,5 @@
-// What every pixel of a frame depends on, besides the geometry and its lights' values. If it differs from the last
-// frame's, every pixel may.
+// Everything on which all pixels of a frame depend, besides the geometry and the values of its lights. If it differs
+// from the last frame's, every pixel may.
 #pragma once
 #include "shade/frame_data.h"
 
@@ -20,7 +20,7 @@ struct FrameSignature {
 };
 
 FrameSignature signature_of(const FrameData& frame);
-// Why two frames differ as a whole, for people: "the camera moved". Null if they do not.
+// Readable reason why two frames differ as a whole, such as "the camera moved". Null if they do not.
 const char* difference(const FrameSignature& a, const FrameSignature& b);
 
 }  // namespace pocketray

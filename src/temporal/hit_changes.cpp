@@ -1,4 +1,4 @@
-// First hits that changed.
+// Finds first hits that changed.
 #include "accel/accel_list.h"
 #include "temporal/tile_search.h"
 
@@ -25,8 +25,8 @@ Beam camera_beam(const CameraRays& c, const PixelRect& pixels, float t_max) {
 
 namespace {
 
-// Whether the ray's first hit, which was `last` and stays as it is, is another one now that its nearest moving triangle
-// is `moving`.
+// Returns whether the ray's first hit, which was `last` and is itself unchanged, is replaced, given its nearest moving
+// triangle `moving`.
 bool hits_otherwise(const MovingGeometry& m, const Hit& last, const Hit& moving) {
   std::uint32_t id = moving.triangle == kNoTriangle ? kNoTriangle : m.ids[moving.triangle];
   std::uint32_t was = last.triangle == kNoTriangle ? kNoTriangle : moving_index(m, last.triangle);
@@ -35,14 +35,14 @@ bool hits_otherwise(const MovingGeometry& m, const Hit& last, const Hit& moving)
   return last.triangle == kNoTriangle || moving.t < last.t || (moving.t == last.t && id < last.triangle);
 }
 
-// Whether what the ray hit in the last frame has changed.
+// Returns whether the triangle hit in the last frame has changed.
 bool has_hit_changed(const MovingGeometry& m, const Hit& last) {
   const std::uint32_t was = last.triangle == kNoTriangle ? kNoTriangle : moving_index(m, last.triangle);
   return was != kNoTriangle && m.triangle_changed[was];
 }
 
 // Lists the pixels of the tile whose camera rays may meet a change, by quarters of the tile, and returns their number;
-// those whose hits have changed need no ray.
+// pixels whose hits have changed need no ray.
 std::uint32_t list_seen(TileSearch* t, float t_max, std::uint8_t* pixels) {
   constexpr std::uint32_t kSide = kChangeTileSide / 2;
   const TilePixels& p = t->pixels;

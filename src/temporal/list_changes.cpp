@@ -1,4 +1,4 @@
-// The pixels to trace, as spans.
+// Lists the pixels to trace, as spans.
 #include <algorithm>
 
 #include "base/check.h"

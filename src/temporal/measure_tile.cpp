@@ -1,4 +1,4 @@
-// Where the rays of a tile's first hits lie.
+// Measures the extent of the rays of a tile's first hits.
 #include <algorithm>
 #include <cmath>
 
@@ -7,7 +7,7 @@
 namespace pocketray {
 namespace {
 
-// How far curved_origin() may lift a point of the triangle, at most.
+// Upper bound of curved_origin()'s lift of a point of the triangle.
 float lift_bound(const FrameData& frame, const Triangle& t, const Vec3& point, const float* weight) {
   float lift = 0;
   for (std::uint32_t i = 0; i < 3; ++i)

@@ -139,7 +139,7 @@ void follow_geometry(const FrameData& frame, MovingGeometry* m) {
     m->triangle_changed[i] = changed;
     m->changed |= changed;
   }
-  if (!m->changed) return;  // `last` is not asked
+  if (!m->changed) return;  // `last` is not read
   std::swap(m->last, m->now);
   std::swap(m->data[0], m->data[1]);
   m->now.positions = frame.positions;

@@ -13,13 +13,13 @@ namespace {
 
 std::uint32_t words_for(std::uint32_t side) { return (side * side + 31) / 32; }
 
-// A place in voxels, and how far rounding may put it off.
+// A position in voxels, and how far off rounding may put it.
 struct GridPlace {
   Vec3 at;
   float slack;
 };
 
-constexpr float kLeastSlack = 1.0f / 64;  // of a voxel: more than the walk below rounds
+constexpr float kLeastSlack = 1.0f / 64;  // of a voxel: more than the rounding of the walk below
 
 GridPlace grid_place(const RayTables& t, const Vec3& p) {
   Vec3 at, size;
@@ -47,7 +47,7 @@ std::uint32_t voxel_number(const int* v) {
          static_cast<std::uint32_t>(v[0]);
 }
 
-// Calls visit(voxel) for all in a range of the grid, inclusive.
+// Calls visit(voxel) for all voxels in a range of the grid, inclusive.
 template <class Visit>
 void for_each_voxel(const int* low, const int* high, Visit visit) {
   int v[3];
@@ -82,8 +82,8 @@ void reset_tables(const Box& scene_bounds, RayTables* t) {
   CHECK_EQ(t->words.count, kVoxelCount * t->words_per_voxel);
   const Box b = is_empty(scene_bounds) ? Box{{0, 0, 0}, {0, 0, 0}} : scene_bounds;
   const bool is_placed = !is_empty(t->bounds) && contains(t->bounds, b);
-  // Room for motion: an eighth on each side, and half of it once the scene has outgrown the grid, so that few frames
-  // do. A grid that has grown shrinks once it is 8 times as large as the scene.
+  // Room for motion: an eighth on each side, and half once the scene has outgrown the grid, so that it rarely does
+  // again. A grid that has grown shrinks once it is 8 times as large as the scene.
   const bool is_far_larger = max_component(extent(t->bounds)) > 8 * max_component(extent(b));
   if (!is_placed || is_far_larger) {
     const bool outgrown = !is_empty(t->bounds) && !is_far_larger;
@@ -99,7 +99,7 @@ void reset_tables(const Box& scene_bounds, RayTables* t) {
 }
 
 void mark_ray(const RayTables& t, const Ray& ray, float t_end, std::uint32_t block) {
-  if (!is_finite(ray.origin) || !is_finite(ray.direction)) return;  // it hits nothing (HARDCASES row 9)
+  if (!is_finite(ray.origin) || !is_finite(ray.direction)) return;  // hits nothing (HARDCASES row 9)
   GridPlace from = grid_place(t, ray.origin);
   Vec3 step;
   int longest = 0;

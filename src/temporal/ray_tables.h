@@ -1,6 +1,6 @@
-// Which rays passed where [Jevans92] secs. 3.2, 3.3: a voxel grid around the scene whose voxels each keep a bit-table.
-// A bit stands for the rays of a block of pixels. Unlike in the paper, where the tracer's own voxels keep them, the
-// grid is for marking alone, so that any accelerator can trace.
+// Records which rays passed where [Jevans92] secs. 3.2, 3.3: a voxel grid around the scene with a bit-table per voxel.
+// A bit stands for the rays of a block of pixels. In the paper the tracer's own voxels keep them; this grid is only for
+// marking, so that any accelerator can trace.
 #pragma once
 #include <atomic>
 
@@ -18,16 +18,16 @@ struct RayTables {
   std::uint32_t words_per_voxel = 0;
   Box bounds = empty_box();                      // of the grid
   Vec3 scale = {0, 0, 0};                        // voxels per unit
-  Array<std::atomic<std::uint32_t>> words;       // of each voxel
+  Array<std::atomic<std::uint32_t>> words;       // by voxel
   Array<std::uint32_t> dirty;                    // blocks whose rays passed a changed voxel
   Array<std::uint16_t> block_column, block_row;  // of a pixel
 };
 
 // Bytes from the arena. `side`² bits per voxel.
 std::size_t ray_tables_need(std::uint32_t width, std::uint32_t height, std::uint32_t side);
-// Its grid has no place until the tables are reset.
+// The grid has no position until the tables are reset.
 RayTables make_ray_tables(std::uint32_t width, std::uint32_t height, std::uint32_t side, Arena* keep);
-// Empties the tables, and places the grid anew if it does not contain the bounds. While it does, it contains all that
+// Empties the tables, and places the grid anew if it does not contain the bounds. Otherwise it contains everything that
 // can change.
 void reset_tables(const Box& scene_bounds, RayTables* tables);
 
@@ -36,8 +36,8 @@ inline std::uint32_t block_of(const RayTables& t, std::uint32_t column, std::uin
 }
 inline bool is_dirty(const RayTables& t, std::uint32_t block) { return t.dirty[block / 32] >> (block % 32) & 1; }
 
-// Sets the block's bit in each voxel that the ray can have passed up to t_end, which may be infinite. Threads may mark
-// at the same time.
+// Sets the block's bit in each voxel that the ray may pass up to t_end, which may be infinite. Threads may mark
+// concurrently.
 void mark_ray(const RayTables& tables, const Ray& ray, float t_end, std::uint32_t block);
 
 // Finds the blocks whose rays passed a voxel that the boxes touch: begin, add each box, and read `dirty`.

@@ -12,7 +12,7 @@
 namespace pocketray {
 namespace {
 
-// Larger groups are not searched for their triangles: their boxes decide.
+// Larger groups are not searched for triangles: their boxes decide.
 constexpr std::uint32_t kSearchedMax = 256;
 
 bool differ(const Vec3& a, const Vec3& b) { return std::memcmp(&a, &b, sizeof a) != 0; }
@@ -31,7 +31,7 @@ void set_box(RecoloredGroups* groups, std::uint32_t lane, const Box& box) {
     groups->bounds[axis][lane] = box.low[axis], groups->bounds[3 + axis][lane] = box.high[axis];
 }
 
-// Divides the scene's triangles among groups, so that each has about as many of those that stop other rays.
+// Divides the scene's triangles among groups that have about equally many triangles with changed blocking.
 void make_groups(const FrameData& frame, std::uint32_t count, Recoloring* r) {
   const Array<const Triangle>& triangles = frame.scene->triangles;
   const std::uint32_t share = (count + kRecoloredGroups - 1) / kRecoloredGroups;
@@ -60,7 +60,7 @@ void make_groups(const FrameData& frame, std::uint32_t count, Recoloring* r) {
     set_box(&r->groups[lane / 4], lane % 4, no_child_box());
 }
 
-// Whether a ray of the beam may meet one of the group's triangles that stop other rays.
+// Returns whether a ray of the beam may meet a triangle of the group whose blocking has changed.
 bool meets_triangle(const Recoloring& r, const FrameData& frame, const BeamHull& hull, std::uint32_t begin,
                     std::uint32_t end) {
   std::uint32_t ids[kBvhLeafSize], count = 0;
@@ -79,7 +79,7 @@ bool meets_triangle(const Recoloring& r, const FrameData& frame, const BeamHull&
   return count > 0 && meets();
 }
 
-// Whether a ray of the beam may be stopped otherwise than in the last frame.
+// Returns whether a ray of the beam may be blocked where it was not, or no longer.
 bool is_stopped_otherwise(const Recoloring& r, const FrameData& frame, const Beam& beam) {
   const BoundedBeam bounded = bounded_beam(beam, r.bounds);
   BeamHull hull;
@@ -134,7 +134,7 @@ Surface surface_at(const FrameData& frame, std::uint32_t x, std::uint32_t y, std
   return s;
 }
 
-// Pixels that show a changed material.
+// Finds pixels that show a changed material.
 void find_shown(TileOfPixels* tile) {
   for_each_hit(*tile, [&](std::uint32_t, std::uint32_t, std::uint32_t, const Hit& hit, std::uint64_t bit) {
     if (hit.triangle == kNoTriangle) return;
@@ -144,7 +144,7 @@ void find_shown(TileOfPixels* tile) {
   });
 }
 
-// Pixels whose camera rays pass other holes before they hit something.
+// Finds pixels whose camera rays pass different holes before they hit something.
 void find_seen_through(TileOfPixels* tile, float t_max) {
   const CameraRays& camera = tile->frame.camera;
   const PixelRect all = {tile->column, tile->row, kChangeTileSide, kChangeTileSide};
@@ -156,7 +156,7 @@ void find_seen_through(TileOfPixels* tile, float t_max) {
   });
 }
 
-// Pixels whose shadow rays are stopped otherwise.
+// Finds pixels whose shadow rays are blocked differently.
 void find_shaded(TileOfPixels* tile, const TileHits& hits) {
   const FrameData& frame = tile->frame;
   if (!has(frame.mask, Effect::shadow)) return;
@@ -179,11 +179,11 @@ void find_shaded(TileOfPixels* tile, const TileHits& hits) {
   }
 }
 
-// Pixels whose rays to interleaved sources are stopped otherwise: they give other light to those about them.
+// Finds pixels whose rays to interleaved sources are blocked differently: they pass different light to neighbours.
 void find_opened(TileOfPixels* tile, const TileHits& hits, const InterleavedSource& source) {
   const FrameData& frame = tile->frame;
   if (!has(frame.mask, source.effect)) return;
-  tile->found &= tile->given;  // the others' rays are looked at
+  tile->found &= tile->given;  // the others' rays are checked
   SourceRay ray[kSourcesOfPixelMax];
   const std::uint32_t count = source.count(frame);
   for (std::uint32_t k = 0; k < count; ++k) {
@@ -262,9 +262,9 @@ const char* follow_recoloring(const FrameData& frame, const MovingGeometry& movi
     if (!(marks_of(*r, scene.triangles[i]) & kStoppedMark)) continue;
     ++count;
     if (!moving.changed) continue;
-    // What it stopped where it was is not known.
+    // Its blocking in its last position is not known.
     const std::uint32_t place = moving_index(moving, i);
-    if (place != kNoTriangle && moving.triangle_changed[place]) return "a surface moved and stops other light";
+    if (place != kNoTriangle && moving.triangle_changed[place]) return "a recoloured surface moved";
   }
   make_groups(frame, count, r);
   return nullptr;

@@ -1,22 +1,22 @@
-// Materials that were recoloured or textured anew since the last frame, and the pixels that this changes: those whose
-// first hits show them, and those whose shadow rays, or camera rays through holes, they stop otherwise. Rays behind
+// Materials that were recoloured or retextured since the last frame, and the pixels that this changes: those whose
+// first hits show them, and those whose shadow rays, or camera rays through holes, they block differently. Rays behind
 // mirrors, and all that passed transparent surfaces, are in the tables.
 #pragma once
 #include "temporal/tile_changes.h"
 
 namespace pocketray {
 
-// What changed of a material.
+// Changed aspects of a material.
 enum RecolorMark : std::uint8_t {
-  kShownMark = 1,    // anything
-  kGivenMark = 2,    // where it takes diffuse light: pixels then give other light to those about them
-  kStoppedMark = 4,  // which rays it stops
-  kInsideMark = 8,   // what its inside absorbs
+  kShownMark = 1,    // any
+  kGivenMark = 2,    // diffuse reflection: pixels then pass different light to their neighbours
+  kStoppedMark = 4,  // which rays it blocks
+  kInsideMark = 8,   // absorption inside it
 };
 
 constexpr std::uint32_t kRecoloredGroups = 64;
 
-// Four groups of triangles, each next to each other in the scene.
+// Four groups of triangles, consecutive in the scene.
 struct RecoloredGroups {
   float bounds[6][4];  // as in BvhNode
   std::uint32_t begin[4], end[4];
@@ -24,10 +24,10 @@ struct RecoloredGroups {
 
 struct Recoloring {
   Array<std::uint8_t> next;   // RecolorMarks of each material, for the next frame; empty: none ever changes
-  Array<std::uint8_t> marks;  // the same of the frame that is followed
+  Array<std::uint8_t> marks;  // RecolorMarks for the current frame
   bool any_next = false, any = false;
-  bool has_holes = false;         // one stops other camera rays, too
-  Array<RecoloredGroups> groups;  // of the triangles that stop other rays
+  bool has_holes = false;         // a material blocks other camera rays, too
+  Array<RecoloredGroups> groups;  // of the triangles with changed blocking
   std::uint32_t group_count = 0;
   Box bounds = empty_box();
 };
@@ -35,16 +35,16 @@ struct Recoloring {
 std::size_t recoloring_need(std::uint32_t material_count);
 Recoloring make_recoloring(std::uint32_t material_count, Arena* keep);
 
-// Between frames: a material has changed.
+// Call between frames after a change of a material.
 void mark_material(const Material& was, const Material& is, const Scene& scene, std::uint32_t index, Recoloring* r);
 
-// A frame is followed: takes the marks that were made for it.
+// Call when a frame is followed: takes the marks made for it.
 void take_marks(Recoloring* r);
-// Follows a frame in which a material has changed. Returns why all of it must be traced, or null.
+// Follows a frame in which a material has changed. Returns the reason why all of it must be traced, or null.
 const char* follow_recoloring(const FrameData& frame, const MovingGeometry& moving, Recoloring* r);
 // Adds the blocks whose rays passed a changed material's triangles.
 void add_recolored(const FrameData& frame, const Recoloring& r, RayTables* tables);
-// As find_changed_pixels(), of what the changed materials alter.
+// find_changed_pixels() for the changes of materials.
 std::uint64_t find_recolored(const Recoloring& r, const ChangeSearch& search, std::uint32_t tile, std::uint64_t known,
                              std::uint64_t* given);
 }  // namespace pocketray

@@ -1,4 +1,4 @@
-// Light and shadows that changed on first hits that did not.
+// Finds changed light and shadows on unchanged first hits.
 #include <algorithm>
 
 #include "accel/accel_list.h"
@@ -22,7 +22,7 @@ Beam shadow_beam(const LightRun& run, const LightPoint& light, const Box& points
 
 namespace {
 
-// The receivers whose shadow ray to the light may meet a change, found in groups; without those that need no look.
+// Finds in groups the receivers whose shadow ray to the light may meet a change, except those that need no test.
 std::uint64_t find_suspects(const TileSearch& t, const LightRun& run, const LightPoint& light, float room,
                             std::uint64_t idle) {
   constexpr std::uint32_t kGroup = 16;  // a quarter of a whole tile; smaller groups cost more than they save
@@ -41,7 +41,7 @@ std::uint64_t find_suspects(const TileSearch& t, const LightRun& run, const Ligh
   return suspects;
 }
 
-// The shadow rays of the receivers to the light; those that cast none are idle.
+// Lists the shadow rays of the receivers to the light; receivers that cast none are idle.
 void list_shadow_rays(TileSearch* t, const LightRun& run, const LightPoint& light, float room, KnownShadows* known,
                       ShadowRays* s) {
   s->rays.count = 0;

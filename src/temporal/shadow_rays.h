@@ -6,7 +6,7 @@
 
 namespace pocketray {
 
-// The filter of some shadow rays, for triangles of the moving geometry, and for all others of the scene.
+// Filters of shadow rays for triangles of the moving geometry, and for all other triangles of the scene.
 struct ShadowFilters {
   const MovingGeometry& geometry;
   HitFilter inner;
@@ -18,9 +18,9 @@ struct ShadowFilters {
 
 struct ShadowRays {
   SegmentPacket rays;
-  std::uint64_t pixel[kPacketMax];  // of each, as a bit of the tile
+  std::uint64_t pixel[kPacketMax];  // by ray, as a bit of the tile
 };
-// Which of the rays `which` something blocks; bit i is ray i.
+// Mask of the rays among `which` that something blocks; bit i is ray i.
 std::uint64_t blocked_among(const AccelTraversal& traversal, const Accel& accel, const ShadowRays& s,
                             std::uint64_t which, const HitFilter* filter, TraceStats* stats);
 

@@ -1,4 +1,4 @@
-// Interleaved sources, virtual lights and distant ones, that reach first hits as they did not, or no longer.
+// Finds interleaved sources (virtual and distant lights) that reach first hits where they did not, or no longer.
 #include "temporal/shadow_rays.h"
 
 namespace pocketray {
@@ -29,7 +29,7 @@ SourceSets suspect_sources(const ChangeSearch& search, const TileHits& hits, con
 
 namespace {
 
-// Adds the pixels of which a ray is blocked where it was not, or no longer, to `given`; forgets the rays.
+// Adds the pixels with a ray that is blocked where it was not, or no longer, to `given`; forgets the rays.
 void find_blocked_otherwise(TileSearch* t, ShadowRays* s) {
   if (s->rays.count == 0) return;
   const FrameData& frame = t->frame;
@@ -52,7 +52,7 @@ void find_blocked_otherwise(TileSearch* t, ShadowRays* s) {
 
 void find_other_light(TileSearch* t, const SourceSets& suspects) {
   if (!is_interleaved(t->frame.mask)) return;
-  t->given |= t->changed;  // no receivers: their rays are not looked at
+  t->given |= t->changed;  // they are no receivers: their rays are not tested
   ShadowRays s;
   s.rays.count = 0;
   SourceRay ray[kSourcesOfPixelMax];

@@ -27,7 +27,7 @@ bool scatters(const Scene& scene, std::uint32_t material) {
   return !is_zero(m.diffuse) || !is_zero(m.specular) || coat_of(scene, material);
 }
 
-// The pixels whose first hits are the last frame's and may receive light.
+// Finds the pixels whose first hits are unchanged and may receive light.
 void find_receivers(TileSearch* t) {
   t->receiver_count = 0;
   t->has_surface = 0;
@@ -49,8 +49,8 @@ bool has_light_changed(const ChangeSearch& search, const LightRun& run, std::uin
   return std::memcmp(&search.last.light_polygons[lamp], &run.polygons[lamp], sizeof(LightPolygon)) != 0;
 }
 
-// Calls visit(run, light, has_changed) for each light, of those that are suspect, that has changed, or to which the
-// tile has a ray that can meet a change. Stops when it returns false.
+// Calls visit(run, light, has_changed) for each suspect light that has changed or to which the tile has a ray that can
+// meet a change. Stops when visit returns false.
 template <class Visit>
 void for_each_suspect(const ChangeSearch& search, const TileHits& hits, std::uint64_t suspects, Visit visit) {
   const FrameData& frame = *search.frame;
@@ -67,7 +67,7 @@ void for_each_suspect(const ChangeSearch& search, const TileHits& hits, std::uin
   }
 }
 
-// Pixels with rays in the tables that may have met a change.
+// Finds pixels with rays in the tables that may have met a change.
 std::uint64_t find_marked(const ChangeSearch& search, std::uint32_t column, std::uint32_t row) {
   std::uint64_t found = 0;
   if (!search.tables) return 0;
@@ -114,7 +114,7 @@ std::uint64_t find_changes_of(const ChangeSearch& search, std::uint32_t tile, co
     for_each_suspect(search, hits, suspects.lights, [&](const LightRun& run, std::uint32_t light, bool has_changed) {
       const bool is_kept = light < search.known_lights;
       KnownShadows none, *of_light = is_kept ? &known[light] : &none;
-      // A light that changed: what is known holds for the pixels that it did not reach, and does not now.
+      // For a changed light, what is known still holds for pixels that it neither reached nor reaches.
       has_changed ? find_lit_by(&t, run, light) : find_changed_shadows(&t, run, light, hits.room, is_kept, of_light);
       return true;
     });

@@ -1,5 +1,5 @@
-// The pixels of a tile whose value can differ from the last frame: rays that may be affected are found by beams around
-// the tile's rays, then tested one by one against the moving geometry alone, where it was and where it is.
+// Finds the pixels of a tile whose value can differ from the last frame: beams around the tile's rays find rays that
+// may be affected, which are then tested one by one against the moving geometry in its last and present position.
 #pragma once
 #include "shade/compensation.h"
 #include "shade/interleaved.h"
@@ -12,28 +12,28 @@ namespace pocketray {
 constexpr std::uint32_t kChangeTileSide = 8;
 static_assert(kChangeTileSide * kChangeTileSide == kPacketMax, "a packet for each tile");
 
-// All first hits of a tile.
+// Extent of all first hits of a tile.
 struct TileHits {
   Box points = empty_box();
-  float room = 0;   // how far from its point a shadow ray may start, in each coordinate
+  float room = 0;   // largest offset of a shadow ray from its point, in each coordinate
   float t_max = 0;  // of the farthest; infinite if a ray misses
 };
 
-// What the last frame left: per pixel and sample the first hit, per pixel whether it has rays in the tables.
+// Data of the last frame: the first hit per pixel and sample, and per pixel whether it has rays in the tables.
 struct LastFrame {
-  const Hit* first_hits = nullptr;  // width × height for each sample
+  const Hit* first_hits = nullptr;  // width × height per sample
   const std::uint8_t* marked = nullptr;
   Array<const LightPoint> lights;
   Array<const LightPolygon> light_polygons;
 };
 
-// Of a tile, a sample and a light, bit 8·y + x for each pixel: whether it is known that the moving geometry as it is
-// now blocks the first hit's shadow ray, and whether it does; whether the pixel needs no look while its first hit
-// stays, since it casts no ray or something that cannot move always blocks it.
+// Per tile, sample and light, bit 8·y + x for each pixel: whether it is known if the moving geometry in its present
+// position blocks the first hit's shadow ray, and whether it does; whether the pixel needs no test while its first hit
+// stays, since it casts no ray or something immovable always blocks it.
 struct KnownShadows {
   std::uint64_t known = 0, blocked = 0, idle = 0;
 };
-constexpr std::uint32_t kKnownLights = 8;  // further lights are looked at anew in each frame
+constexpr std::uint32_t kKnownLights = 8;  // further lights are tested anew in each frame
 
 struct ChangeSearch {
   const FrameData* frame;
@@ -42,20 +42,20 @@ struct ChangeSearch {
   LastFrame last;
   const TileHits* tiles;  // by row
   std::uint32_t tile_columns;
-  bool lights_changed;          // any of them
+  bool lights_changed;          // at least one
   Array<KnownShadows> shadows;  // for each sample, tile and light of the first `known_lights`
   std::uint32_t known_lights, tile_count;
-  const KeptPath* paths;  // of each first hit; null: there are none
-  const Box* path_ends;   // of each tile
+  const KeptPath* paths;  // by first hit; null: there are none
+  const Box* path_ends;   // by tile
 };
 
 inline KnownShadows* known_shadows(const ChangeSearch& s, std::uint32_t sample, std::uint32_t tile) {
   return s.shadows.data + (std::size_t(sample) * s.tile_count + tile) * s.known_lights;
 }
 
-// Rays traced to find out.
+// Rays traced for these tests.
 struct ChangeCounts {
-  std::uint64_t moving_rays = 0;  // against the moving geometry alone
+  std::uint64_t moving_rays = 0;  // against the moving geometry only
   std::uint64_t static_rays = 0;  // shadow rays against everything else
 };
 
@@ -70,7 +70,7 @@ struct SourceSet {
   }
   bool has(std::uint32_t index) const { return bits[index / 64] >> (index % 64) & 1; }
 };
-// Of each kind.
+// A set of each kind.
 struct SourceSets {
   SourceSet of[kInterleavedSourceCount];
 };
@@ -84,12 +84,12 @@ inline bool is_empty(const SourceSets& sets) {
 struct PathSuspects {
   bool first = false;        // the rays themselves
   bool any = false;          // these or shadow rays
-  std::uint64_t lights = 0;  // bit i for light i, of the first ones
+  std::uint64_t lights = 0;  // bit i for light i, of the first lights
   SourceSet virtual_lights;
 };
 
-// What some tiles next to each other may have rays to that meet a change: the camera, interleaved sources, and of the
-// first lights, bit i for light i.
+// Targets to which rays of some adjacent tiles may meet a change: the camera, interleaved sources, and the first
+// lights, bit i for light i.
 struct Suspects {
   bool seen;
   std::uint64_t lights;
@@ -97,15 +97,15 @@ struct Suspects {
   PathSuspects paths;
 };
 constexpr std::uint32_t kSuspectLights = 64;  // further ones are always suspect
-constexpr std::uint32_t kSuspectTiles = 8;    // looked at together
-// Of the tiles [begin, end) of a row.
+constexpr std::uint32_t kSuspectTiles = 8;    // tested together
+// Suspects of the tiles [begin, end) of a row.
 Suspects suspects_of(const ChangeSearch& search, std::uint32_t begin, std::uint32_t end);
 
-// Of the tile's pixels `known`, whose last frame is kept, bit 8·y + x for each that must be traced again. Adds to
-// `given` those that may give other light to the pixels about them (shade/interleaved.h).
+// Returns the tile's pixels that must be traced again, bit 8·y + x, among the pixels `known`, whose last frame is kept.
+// Adds those that may pass different light to their neighbours (shade/interleaved.h) to `given`.
 std::uint64_t find_changed_pixels(const ChangeSearch& search, std::uint32_t tile, const Suspects& suspects,
                                   std::uint64_t known, std::uint64_t* given, ChangeCounts* counts, TraceStats* stats);
-// What is known of the shadows of pixels that are traced again no longer holds.
+// Invalidates what is known of the shadows of pixels that are traced again.
 void forget_shadows(const ChangeSearch& search, std::uint32_t tile, std::uint64_t changed);
 
 // Measures the pixels `known` of a tile of the current frame.

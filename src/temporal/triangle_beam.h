@@ -7,15 +7,15 @@
 
 namespace pocketray {
 
-// The part of a beam within some bounds, as the hull of two boxes, for tests against triangles there.
+// The part of a beam within given bounds, as the hull of two boxes, for tests against triangles there.
 struct BeamHull {
-  float low[2][3], high[2][3];  // of the boxes where it begins and where it ends
-  float direction[3];           // from the one to the other; the largest component is ±1
+  float low[2][3], high[2][3];  // boxes at its start and at its end
+  float direction[3];           // from one to the other; the largest component is ±1
   float scale;                  // makes the largest coordinate about 1
   bool is_bounded;              // otherwise nothing can be proved
 };
 
-// Coordinates between these have products of three that are, with their errors, far from the smallest and the largest
+// Products of three coordinates between these are, with their errors, far from the smallest and the largest
 // floats.
 constexpr float kTameMin = 0x1p-40f, kTameMax = 0x1p40f;
 
@@ -30,12 +30,12 @@ inline float leaves_at(const BoxBeam& b, const Box& bounds) {
   return std::max(t, 0.0f) * (1 + 0x1p-20f);
 }
 
-// A beam, what it is tested with against boxes, and the bounds of these.
+// A beam, its form for tests against boxes, and the bounds of these boxes.
 struct BoundedBeam {
   Beam beam;
   BoxBeam tested;
   Box bounds;
-  bool is_tame;  // far enough from the smallest and the largest floats that flushed denormals matter to no test
+  bool is_tame;  // far enough from the smallest and the largest floats that flushed denormals affect no test
 };
 
 inline BoundedBeam bounded_beam(const Beam& beam, const Box& bounds) {
@@ -83,7 +83,7 @@ inline Float4 dot(const Points4& a, const Points4& b) {
   return a.at[0] * b.at[0] + a.at[1] * b.at[1] + a.at[2] * b.at[2];
 }
 
-// Whether a plane with the normal, however rounded, lies between the hull and the triangle.
+// Returns whether a plane with this normal, however rounded, separates the hull from the triangle.
 inline Mask4 are_apart_along(const BeamHull& hull, const Points4& normal, const Points4 (&corner)[3]) {
   Float4 low[2], high[2];
   for (int end = 0; end < 2; ++end) {
@@ -99,7 +99,7 @@ inline Mask4 are_apart_along(const BeamHull& hull, const Points4& normal, const 
   return (max(max(a, b), c) + flushed < min(low[0], low[1])) | (max(high[0], high[1]) + flushed < min(min(a, b), c));
 }
 
-// Which of the triangles `among`, a bit each, a ray of the beam may meet.
+// Mask of the triangles `among` that a ray of the beam may meet.
 inline unsigned may_meet(const BeamHull& hull, const TriangleBlock& block, unsigned among) {
   if (!hull.is_bounded) return among;
   Points4 corner[3], edge[3];

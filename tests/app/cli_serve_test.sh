@@ -106,7 +106,7 @@ if [ $# -eq 0 ] && "${run[@]}" --help | grep -q '^ *serve '; then  # not under a
   timeout -k 1 120 "${run[@]}" render seesaw --size 16x12 --frames 0:1 --emulate pi-zero --server "$address" \
     -o paced.ppm >/dev/null
   check emulated_frames_come test $? -eq 0
-  expect_in_use render_two_servers 'gave [0-9]+' render seesaw "${shared[@]}" --coherence off --server "$address" --server "$address" -o two.ppm
+  expect_in_use render_two_servers ', sent [0-9]+' render seesaw "${shared[@]}" --coherence off --server "$address" --server "$address" -o two.ppm
   check two_servers_give_the_same_picture cmp -s alone-0007.ppm two-0007.ppm
   expect cost_cap 0 'per frame' render seesaw "${shared[@]}" --server "$address" --price 1 --cost-cap 0.001 -o cap.ppm
   check cost_cap_gives_the_same_picture cmp -s alone-0007.ppm cap-0007.ppm

@@ -12,7 +12,7 @@ check keygen_says_it_in_one_line test "$(wc -l <made.out)" = 1
 check keygen_is_private test "$(stat -c %a pocketray.key)" = 600
 check keygen_has_256_bits grep -qxE 'pocketray-key-1:[0-9a-f]{64}' pocketray.key
 cp -p pocketray.key before.key
-expect keygen_never_overwrites 1 'pocketray.key: there is a file of that name' keygen
+expect keygen_never_overwrites 1 'pocketray.key: a file of that name exists' keygen
 check keygen_leaves_what_is_there cmp -s pocketray.key before.key
 expect keygen_to_a_file 0 '--key other.key' keygen -o other.key
 check keys_differ test "$(cat other.key)" != "$(cat pocketray.key)"
@@ -63,17 +63,17 @@ shared=(--size 64x48 --threads 1 --frames 0:7)
 "${run[@]}" render seesaw "${shared[@]}" -o alone.ppm >/dev/null
 
 # Goal: whoever has another key, or none, is told so in one line on both sides, and renders alone.
-expect tls_other_key 1 "$address: its key is another: copy the same key file to both sides" scenes --server "$address" --key other.key
-expect tls_no_key 1 "$address: it asks for a key: use the one that it was given \(--key\)" scenes --server "$address"
-expect tls_render_with_another_key 0 'its key is another.*continuing without it' \
+expect tls_other_key 1 "$address: its key differs: copy the same key file to both sides" scenes --server "$address" --key other.key
+expect tls_no_key 1 "$address: it requires a key: use the server's key \(--key\)" scenes --server "$address"
+expect tls_render_with_another_key 0 'its key differs.*continuing without it' \
   render seesaw "${shared[@]}" --server "$address" --key other.key -o refused.ppm
 check tls_refused_gives_the_same_picture cmp -s alone-0007.ppm refused-0007.ppm
-check serve_tells_of_another_key grep -q 'disconnected: its key is another' secret.out
+check serve_tells_of_another_key grep -q 'disconnected: its key differs' secret.out
 check serve_tells_of_no_key grep -q 'disconnected: it does not use TLS' secret.out
 
 # Goal: with a key a server may listen to others, and pictures are the same as without one, whoever renders. Method: a
 # sequence shared, one by a device without the scene, in a window, fetched; sealed, like everything here.
-expect_in_use tls_shared 'gave [1-9]' render seesaw "${shared[@]}" --emulate pi-zero --coherence off "${with[@]}" -o shared.ppm
+expect_in_use tls_shared ', sent [1-9]' render seesaw "${shared[@]}" --emulate pi-zero --coherence off "${with[@]}" -o shared.ppm
 expect tls_memory_is_in_the_map 0 'frame +encrypted links +[0-9.]+ KiB' render seesaw "${shared[@]}" "${with[@]}" --plan -o plan.ppm
 expect tls_thin 0 'rendered 0 %' render seesaw "${shared[@]}" "${with[@]}" --memory 500K -o thin.ppm
 for n in 0 1 2 3 4 5 6 7; do
@@ -128,7 +128,7 @@ if command -v openssl >/dev/null && openssl ciphers -psk 2>/dev/null | grep -q E
   openssl s_server -accept 127.0.0.1:0 -nocert -tls1_2 -psk "$wrong" -psk_identity pocketray >other.out 2>&1 < <(sleep 60) &
   other=$!
   for _ in $(seq 100); do grep -q '^ACCEPT ' other.out && break; sleep 0.1; done
-  expect tls_openssl_server 1 'its key is another' scenes --server "$(sed -n 's/^ACCEPT //p' other.out)" --key pocketray.key
+  expect tls_openssl_server 1 'its key differs' scenes --server "$(sed -n 's/^ACCEPT //p' other.out)" --key pocketray.key
   kill $other 2>/dev/null
   wait $other 2>/dev/null
 else
@@ -148,7 +148,7 @@ check tls_loss_is_told_once test "$(grep -c "$address.* continuing without it" l
 for n in 00 04 05 12 24; do check "tls_frame_${n}_is_complete" cmp -s kept-00$n.ppm lost-00$n.ppm; done
 
 serve plain --listen 127.0.0.1:0
-expect tls_key_for_a_plain_server 1 "$address: it does not use TLS: give it a key, too, or use none here" \
+expect tls_key_for_a_plain_server 1 "$address: it does not use TLS: give it the key, too, or use none here" \
   scenes --server "$address" --key pocketray.key
 expect plain_goes_on 0 '^ *cornell ' scenes --server "$address"
 stop plain

@@ -55,6 +55,6 @@ TEST_CASE("gltf_clear_coats_are_read") {
                                      ",\"normalTexture\":{\"index\":0}"),
                               kTexels));
   CHECK(imported.warning ==
-        "not used: normal textures of clear coats with other texture coordinates than those of the base");
+        "not used: normal textures of clear coats with texture coordinates other than the base's");
   CHECK(imported.scene.clear_coats[0].normal.texture == kNone);
 }

@@ -103,7 +103,7 @@ TEST_CASE("given_tangents_that_are_unusable_are_made_anew") {
     std::vector<float> tangents = four({0, 1, 0, -1});
     std::copy(bad.begin(), bad.end(), tangents.begin());
     const ImportedScene imported = square({tangents});
-    CHECK(imported.warning == "tangents that are zero, along the normal or without handedness are made anew");
+    CHECK(imported.warning == "tangents that are zero, along the normal or without handedness are recomputed");
     REQUIRE(imported.scene.tangents.count == 4);
     CHECK(unpacked(imported.scene.tangents[0]) == Vec3{127, 0, 0});
     CHECK(imported.scene.tangents[0].handedness == 0);
@@ -114,6 +114,6 @@ TEST_CASE("given_tangents_that_are_unusable_are_made_anew") {
   tangents[5] = std::numeric_limits<float>::quiet_NaN();
   const ImportedScene not_finite = square({tangents}), three = square({{0, 1, 0, 1, 0, 1, 0, 1, 0, 1, 0, 1}});
   check_all(not_finite, {127, 0, 0, 0}), check_all(three, {127, 0, 0, 0});
-  CHECK(contains(not_finite.warning, "tangents are made anew: TANGENT: element 1 of accessor 4 is nan"));
-  CHECK(contains(three.warning, "tangents are made anew: TANGENT: 3 elements for 4 vertices"));
+  CHECK(contains(not_finite.warning, "tangents are recomputed: TANGENT: element 1 of accessor 4 is nan"));
+  CHECK(contains(three.warning, "tangents are recomputed: TANGENT: 3 elements for 4 vertices"));
 }

@@ -162,7 +162,7 @@ TEST_CASE("mtl_files_are_looked_for_where_programs_put_them") {
     CAPTURE(std::string(name));
     const ImportedScene imported = f.material(std::string("map_Kd ") + name + "\nmap_Ke " + name + "\n");
     CHECK(imported.scene.textures.count == 2);
-    CHECK(imported.warning == "files named in folders that do not exist are taken from beside the model");
+    CHECK(imported.warning == "files in missing folders are read from beside the model instead");
   }
   CHECK(contains(f.material("map_Kd /home/me/gone.tga\n").warning, "gone.tga"));
   f.folder.write("c.mtl", "newmtl m\nKd 0 0.5 0\n");

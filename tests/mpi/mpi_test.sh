@@ -201,7 +201,7 @@ odd reference furnace
 expect odd_scene 1 'rank 1: its scene or program is not that of rank 0' "${reference[@]}" --samples 2000000 -o odd.pfm
 if "$program" --help | grep -q '^ *serve '; then
   odd serve --memory=32M
-  expect odd_options 1 'rank 1: its program or options are not those of rank 0' serve --memory=64M --listen 127.0.0.1:0
+  expect odd_options 1 "rank 1: its program or options differ from rank 0's" serve --memory=64M --listen 127.0.0.1:0
 fi
 odd render cube
 "${run[@]}" render seesaw "${tiny[@]}" --turntable 3600 -o one/odd.png >odd.out 2>&1

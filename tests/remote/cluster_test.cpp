@@ -251,7 +251,7 @@ TEST_CASE("cluster_does_without_a_rank_that_lies") {
       CHECK(client.picture() == rendered_here(request));
     }
     REQUIRE(c.ranks.log.size() == 1);
-    CHECK(c.ranks.log[0].find("rank 2 answered what it was not asked") == 0);
+    CHECK(c.ranks.log[0].find("rank 2 sent an unrequested answer") == 0);
     CHECK(answers >= 3);
     CHECK(answers < 6);
   }

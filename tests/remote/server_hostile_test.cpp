@@ -77,7 +77,7 @@ TEST_CASE("server_tells_another_version_why_it_is_closed") {
   Message hello = hello_message();
   hello.hello.version = kWireVersion + 1;
   check_malformed(&rig, bytes_of(hello), WireError::wrong_version);
-  CHECK(rig.logged("another protocol version"));
+  CHECK(rig.logged("a different protocol version"));
 }
 
 // Goal: impossible requests are refused with the reason, and the connection goes on. Method: one request of each kind,

@@ -419,7 +419,7 @@ TEST_CASE("recoloring_that_reaches_far_makes_whole_frames") {
   start(pair);
   for (Vec3& p : pair.scene->rest_positions) p.x += 0.3f;
   CHECK(recolored_to(pair, 1, pane_changed(Pane::holes, pair.scene->materials[1])) == pixel_count(pair));
-  CHECK(whole_because(pair) == "a surface moved and stops other light");
+  CHECK(whole_because(pair) == "a recoloured surface moved");
   for (Vec3& p : pair.scene->rest_positions) p.x += 0.3f;
   Material m = pair.coherent->renderer.materials[1];
   m.diffuse = {0.1f, 0.2f, 0.3f};

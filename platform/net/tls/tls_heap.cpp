@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::size_t kGrain = 16;
 
-// In front of every block, free or not; the blocks fill the heap without gaps.
+// Header of every block, free or not; the blocks fill the heap without gaps.
 struct alignas(kGrain) BlockHead {
   std::size_t byte_count;  // with this header
   std::size_t is_free;     // 0 or 1
@@ -21,7 +21,7 @@ thread_local TlsHeap* heap_in_use = nullptr;
 
 BlockHead* head_at(TlsHeap* heap, std::size_t offset) { return reinterpret_cast<BlockHead*>(heap->bytes + offset); }
 
-// Joins the free blocks behind a free block to it.
+// Merges a free block with the free blocks behind it.
 void join_free(TlsHeap* heap, std::size_t offset) {
   BlockHead* head = head_at(heap, offset);
   for (;;) {
@@ -32,7 +32,7 @@ void join_free(TlsHeap* heap, std::size_t offset) {
   }
 }
 
-// The first free block that is large enough: a stream has a dozen blocks, so a search by address is quick.
+// Returns the first free block that is large enough: a stream has a dozen blocks, so a search by address is quick.
 void* take_block(TlsHeap* heap, std::size_t byte_count) {
   const std::size_t wanted = (byte_count + kGrain - 1) / kGrain * kGrain + sizeof(BlockHead);
   for (std::size_t offset = 0; offset < heap->byte_count; offset += head_at(heap, offset)->byte_count) {
@@ -86,7 +86,7 @@ void pocketray_tls_free(void* block) {
   platform::TlsHeap* heap = platform::heap_in_use;
   PLATFORM_CHECK(heap != nullptr);
   auto* at = static_cast<unsigned char*>(block);
-  PLATFORM_CHECK(at > heap->bytes && at < heap->bytes + heap->byte_count);  // the heap that it came from
+  PLATFORM_CHECK(at > heap->bytes && at < heap->bytes + heap->byte_count);  // the heap it came from
   platform::BlockHead* head = static_cast<platform::BlockHead*>(block) - 1;
   PLATFORM_CHECK_EQ(head->is_free, std::size_t(0));
   heap->used -= head->byte_count;

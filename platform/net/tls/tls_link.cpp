@@ -9,10 +9,10 @@
 namespace platform {
 namespace {
 
-// For the last record to find room; chosen: as the server's kLingerNs.
+// Time for the last record to find room; chosen: as the server's kLingerNs.
 constexpr std::uint64_t kFarewellNs = 2'000'000'000;
 constexpr std::size_t kHeapAlignment = 16;
-constexpr std::size_t kUnreadMax = 65536;  // taken from a peer that is refused, so that it can read why
+constexpr std::size_t kUnreadMax = 65536;  // read from a refused peer, so that it can read the reason
 
 bool has_tls(const TlsSlot& slot) {
   return slot.phase == TlsPhase::greeting || slot.phase == TlsPhase::connected || slot.phase == TlsPhase::closing;
@@ -31,7 +31,7 @@ void close_inner(TlsLink* link, TlsSlot* slot) {
   slot->inner = -1;
 }
 
-// The system would discard what the peer has been told if its bytes were left unread [RFC 1122, sec. 4.2.2.13].
+// If the peer's bytes were left unread, the system would discard what it has been told [RFC 1122, sec. 4.2.2.13].
 void discard_input(TlsLink* link, TlsSlot* slot) {
   unsigned char part[1024];
   std::size_t count = 0;
@@ -58,7 +58,7 @@ bool begin(TlsLink* link, TlsSlot* slot, Error* error) {
   return true;
 }
 
-// A free slot for a stream; if there is none, one that is closing gives way.
+// Returns a free slot for a stream; if there is none, one that is closing gives way.
 TlsSlot* take_slot(TlsLink* link, TlsPhase phase, Error* error) {
   TlsSlot* slot = free_slot(link->slots, link->slot_count, error);
   for (int i = 0; i < link->slot_count && !slot; ++i) {
@@ -101,7 +101,7 @@ LinkResult accept(Link* base, int listener, int* stream, Error* error) {
   TlsLink* link = tls_of(base);
   TlsSlot* from = tls_slot_of(link, listener);
   if (!from || from->phase != TlsPhase::listening) return stale_stream(error);
-  // First, because a closing one occupies an inner stream, too.
+  // First, because a closing one also occupies an inner stream.
   TlsSlot* slot = take_slot(link, TlsPhase::connecting, error);
   int inner = -1;
   LinkResult result = net(link).accept(link->inner, from->inner, &inner, error);
@@ -128,7 +128,7 @@ const char* stream_name(const Link* base, int stream) {
   return slot->inner >= 0 ? net(link).stream_name(link->inner, slot->inner) : slot->name;
 }
 
-// The slot of a stream whose handshake is done, if there are bytes to move; otherwise null, and what to return instead.
+// Returns the slot of a stream whose handshake is done, if there are bytes to move; otherwise null, and what to return.
 TlsSlot* find_ready(TlsLink* link, int stream, const void* bytes, std::size_t byte_count_max, LinkResult* result,
                     Error* error) {
   TlsSlot* slot = tls_slot_of(link, stream);
@@ -171,7 +171,7 @@ void close_stream(Link* base, int stream) {
   TlsLink* link = tls_of(base);
   TlsSlot* slot = tls_slot_of(link, stream);
   if (!slot) return;
-  // A peer whose bytes are lost must not take the end for a regular one.
+  // A peer with lost bytes must not take the end for a regular one.
   bool regular = slot->phase == TlsPhase::connected && !tls_has_input(slot->tls);
   std::size_t count = 0;
   unsigned char byte;
@@ -218,7 +218,7 @@ LinkResult tls_fail(TlsLink* link, TlsSlot* slot, Error* error) {
 LinkResult tls_fail_in_time(TlsLink* link, TlsSlot* slot, Error* error) {
   std::snprintf(slot->error.text, sizeof slot->error.text,
                 slot->accepted ? "%.95s: it did not complete a TLS handshake"
-                               : "%.95s: no answer to the TLS handshake: does it use TLS, and has it a key (--key)?",
+                               : "%.95s: no answer to the TLS handshake: does it use TLS and a key (--key)?",
                 slot->name);
   ++link->record.failures;
   return break_off(link, slot, error);

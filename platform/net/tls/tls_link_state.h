@@ -1,4 +1,4 @@
-// Shared by the files of the encrypted link: tls_link.cpp has the connections, tls_poll.cpp what is waited for.
+// Shared by the files of the encrypted link: tls_link.cpp handles connections, tls_poll.cpp waiting.
 #pragma once
 #include "platform/net/link_slots.h"
 #include "platform/net/tls/tls_link.h"
@@ -38,7 +38,7 @@ inline TlsLink* tls_of(Link* link) { return static_cast<TlsLink*>(link); }
 inline const LinkBackend& net(const TlsLink* link) { return *link->inner->backend; }
 inline std::uint64_t now_of(TlsLink* link) { return net(link).now_ns(link->inner); }
 
-// Null: stale.
+// Returns null if stale.
 inline TlsSlot* tls_slot_of(TlsLink* link, int stream) {
   TlsSlot* slot = slot_at(link->slots, link->slot_count, stream);
   return slot && slot->phase != TlsPhase::closing ? slot : nullptr;
@@ -48,18 +48,18 @@ inline TlsSlot* tls_slot_of(TlsLink* link, int stream) {
 
 // Advances the handshake.
 LinkResult tls_greet(TlsLink* link, TlsSlot* slot, Error* error);
-// Progress of a connection being made.
+// Advances connecting.
 LinkResult tls_progress(TlsLink* link, TlsSlot* slot, Error* error);
-// The library has failed: says why and gives the connection up.
+// Call when the library has failed: says why and gives up the connection.
 LinkResult tls_fail(TlsLink* link, TlsSlot* slot, Error* error);
-// The time for the handshake is over.
+// Call when the time for the handshake is up.
 LinkResult tls_fail_in_time(TlsLink* link, TlsSlot* slot, Error* error);
-// Frees a slot that is closing, whatever it still keeps.
+// Frees a slot that is closing, whatever it still holds.
 void tls_free_closing(TlsLink* link, TlsSlot* slot);
 
 // ---- tls_poll.cpp
 
-// As in the link's contract.
+// Implements the link's poll().
 int tls_poll(Link* base, LinkWait* waits, int wait_count, std::uint64_t timeout_ns);
 
 }  // namespace platform

@@ -1,4 +1,4 @@
-// What an encrypted link waits for.
+// Waiting of an encrypted link.
 #include <algorithm>
 
 #include "platform/check.h"
@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::uint64_t kHourNs = 3'600'000'000'000;
 
-// What the link is to wait for below, whatever its caller waits for; `wait` is the caller's, or null.
+// The wait on the link below, whatever the caller waits for; `wait` is the caller's, or null.
 LinkWait ask(const TlsSlot& slot, const LinkWait* wait) {
   LinkWait below;
   below.stream = slot.inner;
@@ -38,7 +38,7 @@ LinkWait ask(const TlsSlot& slot, const LinkWait* wait) {
   return below;
 }
 
-// What the stream of a wait can do without waiting; true if anything.
+// Sets what the stream of a wait can do without waiting; returns true if anything.
 bool look(TlsLink* link, LinkWait* wait) {
   wait->can_read = wait->can_write = false;
   if (!wait->want_read && !wait->want_write) return false;
@@ -95,7 +95,7 @@ void move(TlsLink* link, TlsSlot* slot, const LinkWait& below, LinkWait* wait, b
   }
 }
 
-// Gives up streams whose time is over; returns the least that is left of the others', or `wait_ns`.
+// Gives up streams whose time is up; returns the shortest time left of the others, or `wait_ns`.
 std::uint64_t watch_timers(TlsLink* link, std::uint64_t wait_ns) {
   std::uint64_t now = now_of(link);
   for (int i = 0; i < link->slot_count; ++i) {
@@ -110,8 +110,8 @@ std::uint64_t watch_timers(TlsLink* link, std::uint64_t wait_ns) {
   return wait_ns;
 }
 
-// One round of poll(): what is ready now or after the inner link has waited for at most `wait_ns`. Adds time waited in
-// vain to `waited_ns`.
+// One round of poll(): finds what is ready now or after the inner link has waited for at most `wait_ns`. Adds time
+// waited in vain to `waited_ns`.
 int poll_once(TlsLink* link, LinkWait* waits, int wait_count, std::uint64_t wait_ns, std::uint64_t* waited_ns) {
   // 1. What needs no wait.
   wait_ns = watch_timers(link, wait_ns);

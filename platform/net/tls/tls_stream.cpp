@@ -11,7 +11,7 @@ namespace {
 constexpr int kSuites[] = {MBEDTLS_TLS_ECDHE_PSK_WITH_CHACHA20_POLY1305_SHA256, 0};
 constexpr mbedtls_ecp_group_id kCurves[] = {MBEDTLS_ECP_DP_CURVE25519, MBEDTLS_ECP_DP_NONE};
 
-// Codes of our own, outside the library's ranges.
+// Our own codes, outside the library's ranges.
 constexpr int kLinkFailed = -0x7F01, kNotTls = -0x7F02, kNoRandom = -0x7F03;
 
 // A fatal alert, unexpected_message, as the library does not yet know which version to send it in.
@@ -46,7 +46,7 @@ int receive_below(void* context, unsigned char* bytes, std::size_t byte_count) {
   return static_cast<int>(count);
 }
 
-// Alerts [RFC 5246, sec. 7.2] that tell of another key; unknown_psk_identity is of RFC 4279, sec. 2.
+// Alerts [RFC 5246, sec. 7.2] that indicate a different key; unknown_psk_identity is in RFC 4279, sec. 2.
 bool tells_of_key(int alert) {
   return alert == MBEDTLS_SSL_ALERT_MSG_BAD_RECORD_MAC || alert == MBEDTLS_SSL_ALERT_MSG_DECRYPT_ERROR ||
          alert == MBEDTLS_SSL_ALERT_MSG_UNKNOWN_PSK_IDENTITY;
@@ -78,7 +78,7 @@ TlsFault fault_of(const TlsStream& tls, int code) {
   }
 }
 
-// Ends a call of the library: `later`, or the fault.
+// Converts a result of the library: `later`, or the fault.
 LinkResult result_of(TlsStream* tls, int code) {
   PLATFORM_CHECK_LE(code, 0);
   tls->wants_write = code == MBEDTLS_ERR_SSL_WANT_WRITE;
@@ -87,7 +87,7 @@ LinkResult result_of(TlsStream* tls, int code) {
     return LinkResult::ended;
   tls->fault = fault_of(*tls, code);
   tls->code = code;
-  // By this answer a program without a key can tell what it lacks.
+  // From this answer, a program without a key can tell what it lacks.
   if (tls->fault == TlsFault::plain) (void)send_below(tls, kPlainAlert, sizeof kPlainAlert);
   return LinkResult::failed;
 }
@@ -99,7 +99,7 @@ bool start_side(mbedtls_ssl_config* side, int endpoint, const SharedKey& key, Tl
   mbedtls_ssl_conf_rng(side, fill_random, config);
   mbedtls_ssl_conf_min_version(side, MBEDTLS_SSL_MAJOR_VERSION_3, MBEDTLS_SSL_MINOR_VERSION_3);
   mbedtls_ssl_conf_max_version(side, MBEDTLS_SSL_MAJOR_VERSION_3, MBEDTLS_SSL_MINOR_VERSION_3);
-  mbedtls_ssl_conf_authmode(side, MBEDTLS_SSL_VERIFY_NONE);  // no certificates: the key is what both have
+  mbedtls_ssl_conf_authmode(side, MBEDTLS_SSL_VERIFY_NONE);  // no certificates: both have the key
   mbedtls_ssl_conf_ciphersuites(side, kSuites);
   mbedtls_ssl_conf_curves(side, kCurves);
 #ifdef MBEDTLS_SSL_SESSION_TICKETS
@@ -169,7 +169,7 @@ LinkResult tls_flush(TlsStream* tls) {
   if (!tls_keeps_output(*tls)) return LinkResult::done;
   PLATFORM_CHECK(tls->fault == TlsFault::none);
   TlsHeapUse use(&tls->heap);
-  int code = mbedtls_ssl_write(&tls->ssl, nullptr, 0);  // which takes no bytes while some are kept
+  int code = mbedtls_ssl_write(&tls->ssl, nullptr, 0);  // takes no bytes while some are kept
   return code < 0 ? result_of(tls, code) : LinkResult::done;
 }
 
@@ -183,7 +183,7 @@ LinkResult tls_write(TlsStream* tls, const void* bytes, std::size_t byte_count_m
   while (*byte_count < byte_count_max && !tls_keeps_output(*tls)) {
     std::size_t rest = byte_count_max - *byte_count, take = rest < kTlsRecordBytes ? rest : kTlsRecordBytes;
     int code = mbedtls_ssl_write(&tls->ssl, from + *byte_count, take);
-    // Without room below the record is made and kept all the same.
+    // Without room below, the record is created and kept all the same.
     if (code == MBEDTLS_ERR_SSL_WANT_WRITE) {
       PLATFORM_CHECK(tls_keeps_output(*tls));
     } else if (code <= 0) {
@@ -223,10 +223,10 @@ void tls_tell(const TlsStream& tls, const char* peer, Error* error) {
       what = "the peer closed the connection: it was stopped, or rejected what it received";
       break;
     case TlsFault::plain:
-      what = "it does not use TLS: give it a key, too, or use none here (--key)";
+      what = "it does not use TLS: give it the key, too, or use none here (--key)";
       break;
     case TlsFault::wrong_key:
-      what = "its key is another: copy the same key file to both sides (--key)";
+      what = "its key differs: copy the same key file to both sides (--key)";
       break;
     case TlsFault::refused:
       what = "it offers no TLS with this cipher and a shared key: update one of the two";

@@ -32,7 +32,7 @@ LinkResult read(Link* base, int stream, void* bytes, std::size_t byte_count_max,
   return ended ? LinkResult::ended : LinkResult::later;
 }
 
-// A fault that strikes the next byte for `to`, or null; if null, `byte_count` is cut to end before the next fault.
+// Returns a fault that strikes the next byte for `to`, or null; `byte_count` is then cut to end before the next fault.
 const NullFault* fault_at(NullLink* link, Slot* to, std::size_t* byte_count) {
   const NullLinkSettings& settings = link->settings;
   for (int i = 0; i < settings.fault_count; ++i) {
@@ -63,7 +63,7 @@ void send_piece(NullLink* link, Slot* to, const unsigned char* bytes, std::size_
   if (!pipe->silent) lose_piece(line, pipe, &link->random);
 }
 
-// Applies a fault to the line; false: the connection is gone.
+// Applies a fault to the line; returns false if the connection is gone.
 bool strike(NullLink* link, Slot* from, Slot* to, LinkFault fault, unsigned char* flip, bool* twice) {
   switch (fault) {
     case LinkFault::reset:
@@ -136,7 +136,7 @@ LinkResult write(Link* base, int stream, const void* bytes, std::size_t byte_cou
   return *byte_count > 0 ? LinkResult::done : LinkResult::later;
 }
 
-// What the stream of a wait can do now, and when it may do more; kNever: when another stream acts.
+// Sets what the stream of a wait can do now; returns when it can do more, kNever if that takes another stream.
 std::uint64_t look(NullLink* link, LinkWait* wait) {
   wait->can_read = wait->can_write = false;
   Slot* slot = slot_of(link, wait->stream);
@@ -150,7 +150,7 @@ std::uint64_t look(NullLink* link, LinkWait* wait) {
   if (state == LinkResult::later) return slot->news_ns < slot->deadline_ns ? slot->news_ns : slot->deadline_ns;
   bool failed = state == LinkResult::failed;
   bool told_end = !failed && (slot->in.end_ns <= link->clock_ns || slot->in.reset_ns <= link->clock_ns);
-  // There is always room for a peer that is gone: nothing stays in its pipe.
+  // A peer that is gone always has room: nothing stays in its pipe.
   bool room = !failed && (slot->other < 0 || pipe_room(link->slots[slot->other].in) > 0);
   wait->can_write = wait->want_write && (failed || told_end || room);
   std::uint64_t news_ns = failed ? 0 : pipe_news_ns(slot->in);

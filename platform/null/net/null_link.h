@@ -1,6 +1,6 @@
 // The simulated link: peers within one Link reach each other over a line of given bandwidth, latency and jitter, by a
-// clock that only runs in poll() and now_ns(). Faults strike at given bytes; the same settings and calls always give
-// the same course of events. The connecting end is the device: its connections share one full-duplex radio.
+// clock that advances only in poll() and now_ns(). Faults strike at given bytes; equal settings and calls always give
+// equal events. The connecting end is the device: its connections share one full-duplex radio.
 #pragma once
 #include "platform/link.h"
 
@@ -19,7 +19,7 @@ enum class LinkFault : std::uint8_t {
 };
 constexpr int kLinkFaultCount = 9;
 
-// Strikes once in every connection it applies to.
+// Strikes once in every connection to which it applies.
 struct NullFault {
   LinkFault fault = LinkFault::reset;
   int connection = -1;        // index in the Link, from 0; -1: all
@@ -29,11 +29,11 @@ struct NullFault {
 
 struct NullLinkSettings {
   std::uint64_t bytes_per_second = 0;  // each way; 0: no limit
-  bool lines_apart = false;            // every connection has these to itself; otherwise all share one radio
+  bool lines_apart = false;            // every connection has its own line; otherwise all share one radio
   std::uint64_t latency_ns = 0;        // one way
-  std::uint64_t jitter_ns = 0;         // maximum addition for every piece; the order stays
+  std::uint64_t jitter_ns = 0;         // maximum addition for every piece; the order is kept
   std::uint32_t lost_per_million = 0;  // pieces lost and repeated; see lose_piece()
-  std::size_t pipe_bytes = 65536;      // in transit in one direction of a connection at most, including unread bytes
+  std::size_t pipe_bytes = 65536;      // most bytes in transit in one direction of a connection, including unread bytes
   std::uint64_t clock_step_ns = 1000;  // advance of each now_ns(), so that busy-waiting loops end
   std::uint64_t seed = 1;              // for jitter, losses, flipped bits and steps of the clock
   const NullFault* faults = nullptr;   // from the caller, until close_all()
@@ -41,7 +41,7 @@ struct NullLinkSettings {
 };
 constexpr int kNullFaultsMax = 32;
 
-// With custom settings; kNullLink itself has the defaults.
+// The backend with custom settings; kNullLink itself has the defaults.
 extern const LinkBackend kNullLink;
 std::size_t null_link_need(int stream_count_max, const NullLinkSettings& settings);
 Link* null_link_open(const LinkOptions& options, const NullLinkSettings& settings, Error* error);
@@ -55,7 +55,7 @@ struct NullLinkRecord {
   int connection_count = 0;  // requested so far
   int faults_struck = 0;
   std::uint64_t bytes_to_device = 0, bytes_from_device = 0;  // read
-  std::uint64_t elapsed_ns = 0;                              // whatever the clock says
+  std::uint64_t elapsed_ns = 0;                              // independent of the clock
 };
 NullLinkRecord null_link_record(const Link* link);
 

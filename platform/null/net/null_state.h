@@ -71,12 +71,12 @@ inline bool meant_for(const NullFault& fault, const Slot& slot) {
 }
 inline bool at_start(LinkFault fault) { return fault == LinkFault::refuse || fault == LinkFault::no_answer; }
 
-// Progress of a connection being made.
+// Advances connecting.
 LinkResult progress(NullLink* link, Slot* slot, Error* error);
-// The peer that has waited longest, or null; its news_ns may lie in the future.
+// Returns the peer that has waited longest, or null; its news_ns may lie in the future.
 Slot* waiting_at(NullLink* link, const Slot* listener);
 
-// The function of kNullLink.
+// kNullLink's resolve().
 bool resolve(const char* text, LinkAddress* address, Error* error);
 int listen(Link* base, const LinkAddress& address, Error* error);
 int connect(Link* base, const LinkAddress& address, std::uint64_t timeout_ns, Error* error);

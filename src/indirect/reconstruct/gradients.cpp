@@ -6,18 +6,18 @@
 namespace pocketray {
 namespace {
 
-// What is known of a corner: first its least-squares problem, then the range of the values around.
+// A corner's least-squares problem, and later the range of the values around it.
 struct Fit {
   Vec3 xx_yy_zz, xy_yz_zx;  // Σ w u uᵀ over edges of length l along u, w = 1/l
   Vec3 right[3];            // Σ w u · slope, per channel
   Vec3 normal;              // not normalised
-  Vec3 around;              // sum of the edges opposite: 0 where triangles surround the corner
+  Vec3 around;              // sum of the opposite edges: 0 where triangles surround the corner
   float around_length;
   Vec3 low, high;
 };
 
-// Visits the parts of all triangles that store values at corners. In a solution each of the corners is of one part; a
-// hostile file whose splits share parts is not followed further.
+// Visits the parts of all triangles that store values at corners. In a solution, each corner belongs to one part;
+// hostile files whose splits share parts are not followed further.
 template <class Visit>
 struct PartWalk {
   const Scene& scene;
@@ -68,7 +68,7 @@ void add_edge(const Vec3& edge, const Vec3& variation, Fit* fit) {
   for (int channel = 0; channel < 3; ++channel) fit->right[channel] += weighted * slope[channel];
 }
 
-// The edges of a part from one of its corners, what is opposite, and its side.
+// Adds a part's edges from one of its corners, the opposite edge, and its normal.
 void add_part(const RadiosityPart& part, int i, Fit* fit) {
   const Vec3 &at = part.place[i], &next = part.place[next_corner(i)], &previous = part.place[previous_corner(i)];
   fit->normal += cross(next - at, previous - at);
@@ -76,11 +76,11 @@ void add_part(const RadiosityPart& part, int i, Fit* fit) {
   fit->around_length += length(previous - next);
 }
 
-// Chosen: rounding of sums of a few edges is below, the gap of a border far above.
+// Chosen: the rounding of sums of a few edges is far below, the gap at a border far above.
 constexpr float kClosed = 1e-3f;
 bool is_border(const Fit& fit) { return !(length(fit.around) <= kClosed * fit.around_length); }
 
-// The gradient without a part along the normal; 0 where edges determine none.
+// Gradient without its component along the normal; 0 where the edges determine none.
 RadiosityGradient solution_of(const Fit& fit) {
   const Vec3 d = fit.xx_yy_zz, o = fit.xy_yz_zx;
   const float size = length(fit.normal), trace = d.x + d.y + d.z;
@@ -128,7 +128,7 @@ void fit_planes(const Scene& scene, Array<Fit> fits, Array<RadiosityGradient> gr
     if (is_border(fits[i])) gradients[i] = solution_of(fits[i]);
 }
 
-// Takes from a gradient what leaves the range along an edge, and only that: elsewhere it stays as it is.
+// Removes from a gradient the component along an edge that leaves the range, and nothing else.
 void clip(const Fit& fit, const Vec3& value, const Vec3& edge, RadiosityGradient* gradient) {
   const float square = dot(edge, edge);
   if (!(square > 0)) return;

@@ -11,13 +11,13 @@ struct RadiosityGradient {
   Vec3 along(const Vec3& way) const { return dx * way.x + dy * way.y + dz * way.z; }
 };
 
-// A part of a triangle, and where its corners lie.
+// A part of a triangle, with the positions of its corners.
 struct RadiosityPart {
   RadiosityCorners corners;
   Vec3 place[3];
 };
 
-// The halves of a triangle by a split: which of its corners A, B and C are (see RadiositySplit).
+// The two halves of a split triangle, as indices into its corners A, B and C (see RadiositySplit).
 struct HalvedCorners {
   std::uint32_t a, b, c;
 };
@@ -26,17 +26,17 @@ inline HalvedCorners halved_corners(std::uint32_t place) {
   return {turn, turn < 2 ? turn + 1 : 0, turn ? turn - 1 : 2};
 }
 
-// Bytes of the gradients, and those that set_gradients() needs while it works.
+// Bytes of the gradients, and bytes that set_gradients() needs while it works.
 std::size_t gradients_need(const Scene& scene);
 std::size_t gradients_scratch_need(const Scene& scene);
 
-// One for each of the scene's values; null if it has none.
-// The tangent plane at a corner is fitted to the variations along the edges that meet there, as [Bastos92] fig. 5 does
-// for patches: by least squares, weighted by the inverse cubes of their lengths, so that parabolas along lines of
-// unequal steps are reproduced. On the border of a surface, where edges leave to one side only, to twice the variation
-// less what the gradient at the other end says: the slope of the parabola, as on grids. What would lead, half an edge
-// away, out of the range of the values at the corner and its neighbours is taken from a gradient, along that edge
-// alone. Corners that do not share a value have gradients of their own.
+// Returns a gradient for each of the scene's values, or null if it has none.
+// The tangent plane at a corner is fitted to the variations along its edges, as [Bastos92] fig. 5 does for patches: by
+// least squares, weighted by the inverse cubes of their lengths, so that parabolas along lines of unequal steps are
+// reproduced. On the border of a surface, where edges leave to one side only, it is fitted to twice the variation less
+// the slope of the gradient at the other end: the slope of the parabola, as on grids. If a gradient would leave the
+// range of the values at the corner and its neighbours half an edge away, the excess is removed along that edge alone.
+// Corners that do not share a value have gradients of their own.
 const RadiosityGradient* set_gradients(const Scene& scene, Arena* keep, Arena* scratch);
 
 }  // namespace pocketray

@@ -1,4 +1,4 @@
-// Illumination between the vertices of a mesh, rebuilt from the values there [Bastos92].
+// Reconstructs illumination between the vertices of a mesh from the values there [Bastos92].
 #pragma once
 #include "scene/radiosity.h"
 
@@ -18,7 +18,7 @@ struct PatchCorners {
   const RadiosityNode *b00, *b10, *b01, *b11;
 };
 
-// One value for the whole patch: the mean of its corners.
+// Constant over the whole patch: the mean of its corners.
 inline Vec3 constant_patch(const PatchCorners& c) {
   return ((c.b00->value + c.b10->value) + (c.b01->value + c.b11->value)) * 0.25f;
 }

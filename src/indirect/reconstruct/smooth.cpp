@@ -13,7 +13,7 @@ Vec3 light_at(const TriangleLight& light, const float (&weight)[3], Reconstructi
 }  // namespace
 
 Vec3 smooth_cell(const PatchCorners& corners, float s, float t, Reconstruction how) {
-  const bool below = s >= t;  // the half with (1, 0), whose corners follow the cell's border as the other's do
+  const bool below = s >= t;  // the half with (1, 0); corners of both halves follow the cell's border
   const RadiosityNode* const nodes[3] = {corners.b00, below ? corners.b10 : corners.b11,
                                          below ? corners.b11 : corners.b01};
   constexpr float kPlaces[2][3][2] = {{{0, 0}, {1, 1}, {0, 1}}, {{0, 0}, {1, 0}, {1, 1}}};
@@ -26,7 +26,7 @@ Vec3 smooth_cell(const PatchCorners& corners, float s, float t, Reconstruction h
     light.value[i] = nodes[i]->value;
     light.to_next[i] = towards(next_corner(i)), light.to_previous[i] = towards(previous_corner(i));
   }
-  // As of a square: an affine map keeps what is smooth.
+  // Slants for a square: an affine map preserves smoothness.
   constexpr float kSlants[2][3] = {{0.5f, -0.5f, 0}, {-0.5f, 0, 0.5f}};
   for (int i = 0; i < 3; ++i) light.slant[i] = kSlants[below][i];
   const float weight[3] = {1 - (below ? s : t), below ? s - t : s, below ? t : t - s};

@@ -1,4 +1,4 @@
-// Illumination over a triangle, rebuilt from the value and the gradient at each corner: piecewise polynomials whose
+// Reconstructs illumination over a triangle from the value and the gradient at each corner: piecewise polynomials whose
 // slope across an edge is linear along it, so that triangles that share the corners of an edge meet without a jump in
 // value or slope (C¹) [Salesin, Lischinski, DeRose 1992, "Reconstructing Illumination Functions with Selected
 // Discontinuities"]. Corners that do not share a value or gradient leave a discontinuity.
@@ -18,10 +18,10 @@ struct TriangleLight {
 constexpr int next_corner(int i) { return i == 2 ? 0 : i + 1; }
 constexpr int previous_corner(int i) { return i == 0 ? 2 : i - 1; }
 
-// Chosen: beyond, a sliver would extrapolate slopes along its short edges over its length. Such edges are C⁰.
+// Chosen: beyond this, a sliver would extrapolate slopes of its short edges over its length. Such edges are C⁰.
 constexpr float kSlantMax = 2;
 
-// How far along an edge, from its middle and in its lengths, the corner opposite lies: the share of the slope along the
+// Offset of the opposite corner along an edge, from its middle and in its lengths: the share of the slope along the
 // edge in the slope towards that corner. Both elements stay within the range of the values and of the planes at the
 // corners, half an edge away, as long as no corner lies beyond an edge (±½).
 inline float slant_of(const Vec3& from, const Vec3& to, const Vec3& opposite) {
@@ -32,13 +32,13 @@ inline float slant_of(const Vec3& from, const Vec3& to, const Vec3& opposite) {
   return slant > -kSlantMax ? slant < kSlantMax ? slant : kSlantMax : -kSlantMax;
 }
 
-// Piecewise quadratic over the twelve parts that the medians and the lines between the middles of edges leave [Powell,
+// Piecewise quadratic over the twelve parts between the medians and the lines joining the middles of edges [Powell,
 // Sabin 1977, "Piecewise Quadratic Approximations on Triangles"]. Their element of six parts is C¹ only where its inner
-// point lies in line with those of its neighbours; this one needs no neighbour. As a sum: one quadratic, and for each
-// of the six lines the square of the distance beyond it.
+// point is collinear with its neighbours'; this one needs no neighbour. As a sum: one quadratic, and for each of the
+// six lines the square of the distance beyond it.
 inline Vec3 quadratic_triangle(const TriangleLight& t, const float (&weight)[3]) {
   auto beyond = [](float distance) { return distance > 0 ? distance * distance : 0.0f; };
-  // By the kink in the middle of each edge: that of the slope along it, and the one across it that makes up for it.
+  // Kinks in the middle of each edge: of the slope along it, and of the slope across it that compensates.
   Vec3 along[3], across[3], near[3], median[3];
   for (int k = 0; k < 3; ++k) {
     const int i = next_corner(k), j = previous_corner(k);
@@ -62,7 +62,7 @@ inline Vec3 quadratic_triangle(const TriangleLight& t, const float (&weight)[3])
 // Piecewise cubic over the three parts around the centre [Clough, Tocher 1965, "Finite element stiffness matrices for
 // analysis of plates in bending"], in its reduced form, as Bézier triangles.
 inline Vec3 cubic_triangle(const TriangleLight& t, const float (&weight)[3]) {
-  Vec3 inner[3], middle[3], ring[3];  // on the way from a corner to the centre; of parts; next to the centre
+  Vec3 inner[3], middle[3], ring[3];  // between corner and centre; of parts; around the centre
   for (int i = 0; i < 3; ++i) inner[i] = t.value[i] + (t.to_next[i] + t.to_previous[i]) * (1.0f / 9);
   for (int k = 0; k < 3; ++k) {
     const int i = next_corner(k), j = previous_corner(k);

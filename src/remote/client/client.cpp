@@ -10,8 +10,8 @@
 namespace pocketray {
 namespace {
 
-// Derived: the buffers hold the longest messages queued at once and the longest ping. Measured as in outlook.cpp:
-// kLooksWatched and the frames watched.
+// Derived: the buffers hold the longest messages queued at once and the longest ping. kLooksWatched and the number of
+// watched frames are measured as in outlook.cpp.
 constexpr std::size_t kOutBytes = 1024;     // for requests waiting to be sent
 constexpr std::size_t kInBytesMin = 20000;  // holds the ping that measures the bandwidth
 constexpr double kStartDisproved = 2;       // chosen
@@ -29,7 +29,7 @@ std::size_t in_bytes(const CodecShape& shape, const Settings& settings, const Li
   return std::max({chunk, kInBytesMin, light_message_bytes_max(settings, light)});
 }
 
-// True if the device polls often in this frame to see when rows arrive: in the first frames with a server and a few
+// True if the device polls often in this frame to see when rows arrive: in the first frames with a server and in a few
 // later ones.
 bool is_watched(const Client& client) {
   return client.frames_with_servers < kWatchedFirst || client.frames_with_servers % kWatchedEvery == 0;
@@ -43,7 +43,7 @@ std::uint32_t rows_between_looks(const Client& client) {
   if (client.joined && is_watched(client)) look_ns = std::min(look_ns, client.share.predicted_ns / kLooksWatched);
   look_ns = std::min(look_ns, work_ns_max(client));
   if (!any) return client.settings.height;
-  // By this frame's rows so far and by earlier frames, as rows below the sky cost more.
+  // Uses this frame's rows so far and earlier frames, since rows below the sky cost more.
   std::uint32_t count = 0;
   for (double ns = 0; ns < look_ns && client.merge.next_row + count < client.model.rows.count; ++count) {
     const RowModel& row = client.model.rows[client.merge.next_row + count];
@@ -52,7 +52,7 @@ std::uint32_t rows_between_looks(const Client& client) {
   return std::max(1u, count);
 }
 
-// Handles what has arrived, after waiting for at most `timeout_ns`.
+// Handles what has arrived, after waiting at most `timeout_ns`.
 void look_at_servers(Client* client, std::uint64_t timeout_ns) {
   platform::LinkWait waits[kServerCountMax];
   int wait_count = 0;
@@ -91,8 +91,8 @@ bool awaits_rows(const Client& client) {
                      [](const RemoteServer& server) { return server.frame.open; });
 }
 
-// Takes a missing row that no server is about to send; otherwise the one that its server will send last, the topmost
-// server's first. False if none is missing.
+// Takes a missing row that no server is about to send; otherwise the row that its server will send last, from the
+// topmost server first. Returns false if none is missing.
 bool take_latest_row(Client* client, std::uint32_t* row_begin, std::uint32_t* row_end) {
   auto take = [&](std::uint32_t row) {
     take_row(&client->merge, row);
@@ -113,7 +113,7 @@ bool take_latest_row(Client* client, std::uint32_t* row_begin, std::uint32_t* ro
   return false;
 }
 
-// `given_up`: the frame ends before its time, which tells nothing of a server that sent no rows yet.
+// `given_up`: the frame ends early, which says nothing about a server that has sent no rows yet.
 void cancel_rest(Client* client, bool given_up) {
   Message message;
   message.type = MessageType::cancel;
@@ -195,20 +195,20 @@ void close_client(Client* client) {
 void work_until(Client* client, std::uint64_t due_ns) {
   for (std::uint64_t now = client_now_ns(*client), before = 0; now < due_ns && now != before;
        now = client_now_ns(*client)) {
-    before = now;  // also if the clock was set back meanwhile: the time is still over
+    before = now;  // also if the clock was set back meanwhile: the time is up
     client->link->backend->poll(client->link, nullptr, 0, due_ns - now);
   }
 }
 
 void advance_client(Client* client, std::uint64_t timeout_ns) {
   look_at_servers(client, timeout_ns);
-  // Idles for a while to wait for answers of the overture, within the time a network may cost.
+  // Idles for answers of the overture, within the time that a network may cost.
   while (timeout_ns == 0 && !client->complete) {
     std::uint64_t wanted = wait_wanted_ns(*client);
     if (wanted == 0) return;
     double left = time_to_spare(*client, 0);
     std::uint64_t begin = client_now_ns(*client);
-    // Does not waste on new servers the time that others saved.
+    // Does not spend on new servers the time that others saved.
     if (client->joined)
       left = std::min(left, kWaitShare * client->share.predicted_ns - static_cast<double>(client->waited_ns));
     if (left <= 0) return;
@@ -243,8 +243,8 @@ void accept_chunk(Client* client, RemoteServer* s, const RowChunk& chunk, std::u
   if (chunk.prepare_ns > 0) s->frame.prepare_ns = chunk.prepare_ns * price_ratio(chunk.price);
   if (s->frame.first_ns == 0) {
     s->frame.first_ns = s->frame.heard_ns;
-    // Pings may all have been seen late. Without its work, the first chunk bounds the start from above; as the link's
-    // jitter does the same to single frames, only one far too long is corrected.
+    // Pings may all have been seen late. Minus its work, the first chunk bounds the start from above; since the link's
+    // jitter raises it in single frames too, only a start that is far too long is corrected.
     const double start_ns = static_cast<double>(s->frame.heard_ns - s->frame.asked_ns) - work_ns;
     const Smoothed& known = client->model.servers[server].start_ns;
     if (s->phase == ServerPhase::ready && is_known(known) &&

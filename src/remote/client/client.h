@@ -17,8 +17,8 @@
 
 namespace pocketray {
 
-// Rows per chunk that a server sends: at the ends of a frame, at most, and throughout if no order is asked for. Larger
-// chunks need fewer headers and compress better, smaller ones arrive sooner; tuned with split-report.
+// Rows per chunk that a server sends: at most at the ends of a frame and in its middle, and throughout if no order is
+// requested. Larger chunks need fewer headers and compress better, smaller ones arrive sooner; tuned with split-report.
 constexpr std::uint32_t kChunkRowsMin = 2, kChunkRowsMax = 32, kChunkRowsEven = 8;
 
 struct ClientOptions {
@@ -27,28 +27,28 @@ struct ClientOptions {
   SplitWish wish;
   double cost_per_device_pixel = 0, cost_per_byte = 0;  // energy, in the unit of the cost cap
   double cost_per_megabyte = 0;                         // price of 10⁶ bytes
-  double device_share = -1;                             // in [0, 1]: a fixed m, for comparisons; negative: the best
-  bool near_lossless = false;                           // servers' pixels may be a level off per channel
+  double device_share = -1;                             // in [0, 1]: a fixed m, for comparisons; negative: the optimum
+  bool near_lossless = false;                           // servers' pixels may be off by a level per channel
   double coarse_after_ns = 0;                           // frames that take longer begin with a coarse picture; 0: none
-  bool device_goes_on = true;                           // goes on into missing rows; false: for comparisons
+  bool device_goes_on = true;                           // continues into missing rows; false: for comparisons
   Pace pace;                                            // the CPU to emulate
-  double own_light_pixel_ns = 0;                        // as pace.ns_per_pixel, in frames shared by effect; 0: the same
-  CodeCost decode;                                      // and what decoding takes there; 0: as here
+  double own_light_pixel_ns = 0;                        // like pace.ns_per_pixel, for frames shared by effect; 0: equal
+  CodeCost decode;                                      // emulated cost of decoding; 0: the host's
   LightOptions light;                                   // of frames shared by effect
-  const float* row_costs = nullptr;                     // relative row costs on it; see row_costs.h
+  const float* row_costs = nullptr;                     // relative row costs on the device; see row_costs.h
   bool has_scene = true;                                // false: the device only shows what servers render
   int check_count = kCheckCountAuto;  // servers' pixels to check per frame, at most kSpotChecksMax; 0: none
   // Random bytes that no server can predict, as in platform/entropy.h; null: a fixed sequence, for tests.
   bool (*entropy)(void* bytes, std::size_t byte_count) = nullptr;
   // Chosen: TCP repeats a lost packet after 1 s [RFC 6298, sec. 2], so 3 s outlast one loss; the device renders
-  // meanwhile. A server that fails is retried after half a second, twice that and so on: soon after a short fault, and
-  // rarely enough to cost nothing where it lasts.
+  // meanwhile. A server that fails is retried after half a second, then after twice that and so on: soon after a short
+  // fault, and rarely enough to cost nothing if it lasts.
   std::uint64_t connect_timeout_ns = 3'000'000'000;
-  std::uint64_t silence_timeout_ns = 3'000'000'000;   // without an answer; half a message is none
-  std::uint64_t prepare_timeout_ns = 30'000'000'000;  // the same until the first rows, as the server builds its scene
-                                                      // first; and for light, even if it answers pings
+  std::uint64_t silence_timeout_ns = 3'000'000'000;   // without a complete answer
+  std::uint64_t prepare_timeout_ns = 30'000'000'000;  // until the first rows, since the server builds its scene first;
+                                                      // and for light, even if the server answers pings
   std::uint64_t retry_ns_min = 500'000'000, retry_ns_max = 30'000'000'000;
-  void (*log)(void* context, const char* line) = nullptr;  // one line when a server is lost or back
+  void (*log)(void* context, const char* line) = nullptr;  // writes one line when a server is lost or back
   void* log_context = nullptr;
 };
 
@@ -63,60 +63,60 @@ enum class ServerPhase : std::uint8_t {
 };
 
 const char* phase_text(ServerPhase phase);
-// Describes a server's error and what to do about it.
+// Describes a server's error and how to mend it.
 const char* wire_error_text(WireError code);
 
 // A server's rows in a frame.
 struct ServerFrame {
-  std::uint32_t row_begin = 0, row_end = 0;  // asked for
-  std::uint32_t rows_come = 0;               // of these received, including rows the device had already done
+  std::uint32_t row_begin = 0, row_end = 0;  // requested
+  std::uint32_t rows_come = 0;               // received, including rows the device had already done
   std::uint64_t asked_ns = 0, bytes = 0;
-  std::uint64_t row_bytes = 0;  // of these, rows without message overhead
-  double render_ns = 0;         // for the received rows: the server's work at its price
-  double prepare_ns = 0;        // and that before them
+  std::uint64_t row_bytes = 0;  // bytes of received rows without message overhead
+  double render_ns = 0;         // the server's work on received rows, at its price
+  double prepare_ns = 0;        // its work before them
   bool open = false;            // more rows are expected
-  std::uint64_t heard_ns = 0;   // when the last rows came, as seen: at most unseen_ns earlier
+  std::uint64_t heard_ns = 0;   // when the latest rows came, as seen: at most unseen_ns earlier
   std::uint64_t unseen_ns = 0;
   std::uint64_t first_ns = 0;      // when the first rows came
-  std::uint64_t bytes_behind = 0;  // of the chunks after the first
-  double render_behind_ns = 0;     // and the server's time for their rows
-  bool answers = false;            // it has answered since the request, even if only a ping
+  std::uint64_t bytes_behind = 0;  // bytes of the chunks after the first
+  double render_behind_ns = 0;     // the server's time for their rows
+  bool answers = false;            // has answered since the request, even if only a ping
 };
 
 struct RemoteServer {
   platform::LinkAddress address;
   ServerPhase phase = ServerPhase::waiting;
-  std::uint64_t phase_ns = 0;  // when that of its overture began
+  std::uint64_t phase_ns = 0;  // when its overture's phase began
   MessageStream messages;
   RowDecoder* decoder = nullptr;
   platform::LinkTimer timer;                           // of the phase: next attempt, or when the server counts as lost
   std::uint64_t retry_ns = 0;                          // until the next attempt
   bool told = false;                                   // the reason it is not in use has been logged
-  bool lied = false;                                   // it has sent wrong pixels and is never used again
+  bool lied = false;                                   // has sent wrong pixels and is never used again
   std::uint64_t useful_ns = 0;                         // when this connection first brought rows; 0: not yet
-  std::uint32_t ping_id = 0, ping_bytes = 0;           // of the ping awaiting an answer, and its payload; id 0: none
+  std::uint32_t ping_id = 0, ping_bytes = 0;           // the ping awaiting an answer, and its payload; id 0: none
   std::uint32_t pings_answered = 0, pings_missed = 0;  // missed: the device did not poll when the answer came
   std::uint64_t ping_ns = 0, ping_due_ns = 0;
   bool ping_alone = false;  // no rows of any server were in flight when it was sent
   double round_trip_ns = 0, ns_per_byte = 0;
   double scaled = 1;                 // factor on ns_per_byte from rows' times since its own measurement
   std::uint64_t quiet_until_ns = 0;  // until then its link is measured and others send no rows
-  std::uint64_t anew_ns = 0;         // earliest time to measure its link again
+  std::uint64_t anew_ns = 0;         // earliest time of the next measurement of its link
   double probe_ns_per_pixel = 0;
   Smoothed row_ns;                   // for a device without the scene: time from request to arrival of a row
   FrameRequest asked;                // last request; frame 0: none on this connection
-  RowSequence due;                   // its rows that are still expected,
+  RowSequence due;                   // rows of it that are still expected,
   std::uint32_t due_rows = 0;        // and their number
   std::uint64_t late_rows = 0;       // rows of earlier requests that may be in flight;
   std::uint64_t late_at_ping = 0;    // their number when the ping was sent
   std::uint32_t coarse_due = 0;      // coarse pictures that may still come,
   std::uint32_t light_due = 0;       // and light maps
-  std::uint64_t light_asked_ns = 0;  // when the light of the request under way was asked for; 0: none is to come
+  std::uint64_t light_asked_ns = 0;  // when the current request's light was requested; 0: none is due
   std::uint32_t light_missed = 0;    // connections since the last map that ended before one came
   bool more = false;                 // unread input remains: one poll handles at most a frame's worth
   bool unanswered = false;           // no answer since rows were requested; new requests do not extend the time
   std::uint32_t chunk_count = 0;     // received on this connection
-  std::uint16_t price = kPriceUnit;  // as it said last
+  std::uint16_t price = kPriceUnit;  // as last stated
   ServerFrame frame;
   bool is_witness = false;   // asked for another server's row; its own rows of the frame
   ServerFrame frame_before;  // are then kept here
@@ -127,8 +127,8 @@ struct RemoteServer {
 struct FrameShare {
   std::uint32_t frame = 0;
   double predicted_ns = 0;                          // by the chosen split; 0: unknown
-  bool unchanged = false;                           // equals the last frame, whose rows it keeps
-  double measured_ns = 0;                           // from its begin to its completion
+  bool unchanged = false;                           // equals the last frame, whose rows are kept
+  double measured_ns = 0;                           // from its start to its completion
   double local_ns = 0;                              // predicted for the device alone; 0: unknown
   std::uint32_t device_rows = 0;                    // rendered by the device
   std::uint64_t device_pixels = 0;                  // traced for them
@@ -137,13 +137,13 @@ struct FrameShare {
   std::uint64_t server_bytes[kServerCountMax] = {};                              // received from each
   std::uint32_t checked[kServerCountMax] = {};  // pixels checked; rows if the device has no scene
   std::uint32_t lies = 0;                       // servers caught with wrong pixels
-  std::uint64_t row_bytes = 0;                  // received, rows without message overhead
-  std::uint32_t kept_rows = 0;                  // received, of chunks of which the server traced nothing,
+  std::uint64_t row_bytes = 0;                  // bytes of received rows without message overhead
+  std::uint32_t kept_rows = 0;                  // rows received in chunks of which the server traced nothing,
   std::uint64_t kept_bytes = 0;                 // and all bytes of these chunks
   std::uint64_t bytes_in = 0, bytes_out = 0;    // on the wire, all connections
   bool by_effect = false;                       // a server rendered the indirect light of the device's rows,
-  bool has_light = false;                       // which they have,
-  std::uint32_t light_age = 0;                  // of so many frames before,
+  bool has_light = false;                       // which include it,
+  std::uint32_t light_age = 0;                  // rendered this many frames before,
   std::uint64_t light_bytes = 0;                // of maps that came during the frame
 };
 
@@ -151,17 +151,17 @@ struct FrameShare {
 struct Arrivals {
   std::uint64_t asked_ns = 0;                          // when rows could first be requested
   std::uint64_t first_ns = 0, last_ns = 0, bytes = 0;  // bytes: of the chunks after the first
-  std::uint64_t gap_ns_max = 0;                        // between two polls of the link
+  std::uint64_t gap_ns_max = 0;                        // longest gap between two polls of the link
 };
 
-// Steps by which a link that limits the split is assumed to be faster, as servers may not share it at all.
+// Experiments that assume a link limiting the split to be faster, since servers may not share it at all.
 struct LinkTrial {
-  bool limited = false;                     // the frame's split is bound by the link
-  float before = 0;                         // its time per byte before the trial under way; 0: none
-  std::uint64_t rest = 1, rests_until = 0;  // in frames with servers; the rest doubles with each trial that fails
+  bool limited = false;                     // the link limits the frame's split
+  float before = 0;                         // its time per byte before the current trial; 0: none
+  std::uint64_t rest = 1, rests_until = 0;  // in frames with servers; the rest doubles with each failed trial
 };
 
-// A row that the device renders in parts because it takes longer than the time between polls.
+// A row that the device renders in parts because it takes longer than the interval between polls.
 struct DeviceRow {
   bool in_parts = false;  // such a row is in progress
   std::uint32_t row = 0, columns_done = 0;
@@ -185,17 +185,17 @@ struct Client {
   // The current frame.
   FrameRequest request;
   bool complete = true, joined = false;
-  bool coarse_asked = false;    // a server is to send a coarse picture of it first
-  bool coarse_shown = false;    // its pixels are in the rows that were missing when it came,
-  std::uint64_t coarse_ns = 0;  // so long after the frame's begin
+  bool coarse_asked = false;    // a server was asked to send a coarse picture first
+  bool coarse_shown = false;    // it is shown in the rows that were missing when it came,
+  std::uint64_t coarse_ns = 0;  // this long after the start of the frame
   bool held = false;            // requests wait until a link is measured
   std::uint64_t begin_ns = 0, waited_ns = 0, looked_ns = 0;
-  double alone_ns = 0;           // predicted for the device without servers, as it renders its rows of the frame
+  double alone_ns = 0;           // predicted for the device without servers, rendering its rows of the frame likewise
   bool prepared = false;         // the device can trace its pixels,
-  std::uint64_t prepare_ns = 0;  // which took so long
+  std::uint64_t prepare_ns = 0;  // after this long
   mutable platform::LinkClock clock;
   std::uint64_t unwatched_ns = 0;  // time before the latest poll: input may have arrived that much earlier
-  Smoothed decode_ns, code_saves;  // per coded pixel: to decode it; bytes that its code saves
+  Smoothed decode_ns, code_saves;  // per coded pixel: time to decode it; bytes that coding saves
   Arrivals arrivals;
   DeviceRow device_row;
   double device_ns = 0;                          // spent on its own rows in this frame
@@ -211,9 +211,9 @@ struct Client {
   std::uint64_t progress_ns = 0;  // when missing rows last came
 };
 
-// How rows should come over a link of that speed, where coding pays from `threshold` nanoseconds per byte on.
+// Order and coding of rows for a link of this speed, where coding pays above `threshold` nanoseconds per byte.
 RowCoding row_coding(double ns_per_byte, double threshold, bool near_lossless);
-// That threshold for a server, by what decoding has taken and saved on this device; near it, rows stay as they are.
+// This threshold for a server, from decoding times and savings on this device; close to it, the coding stays unchanged.
 double code_threshold(const Client& client, const RemoteServer& server);
 
 // Arena bytes for pictures of that size. The client uses server_count streams of the link.
@@ -229,21 +229,21 @@ void close_client(Client* client);
 // Advances connections, overtures and arriving rows; blocks for at most `timeout_ns`.
 void advance_client(Client* client, std::uint64_t timeout_ns);
 
-// What is known of a frame when rows of it are requested.
+// State of a frame when rows of it are requested.
 struct FrameStart {
   double seconds = 0;            // animation time
   std::uint64_t begin_ns = 0;    // when its input was known, by client_now_ns()
   bool prepared = false;         // the renderer is; otherwise it has camera and exposure, and device_is_ready() follows
-  std::uint64_t prepare_ns = 0;  // that took so long
-  bool unchanged = false;        // its pixels are those of the last frame
+  std::uint64_t prepare_ns = 0;  // time taken by that
+  bool unchanged = false;        // its pixels equal those of the last frame
 };
 // Begins a frame: plans the split and requests the servers' rows. Abandons an unfinished frame.
 void begin_client_frame(Client* client, const Renderer& renderer, const FrameStart& start);
-// True while the device has rows to render: its own, or servers' that are not worth waiting for.
+// True while the device has rows to render: its own, or servers' rows that are not worth waiting for.
 bool has_device_rows(const Client& client);
-// The renderer of a frame under way has been prepared, which took `prepare_ns`.
+// Call when the renderer of the current frame has been prepared, which took `prepare_ns`.
 void device_is_ready(Client* client, std::uint64_t prepare_ns);
-// The rows for the device to render next, at most `row_count_max`; false if it has none.
+// Takes the rows that the device must render next, at most `row_count_max`; returns false if there are none.
 bool take_device_rows(Client* client, std::uint32_t row_count_max, std::uint32_t* row_begin, std::uint32_t* row_end);
 // Call when the device has rendered them in `ns` of wall-clock time into client->pixels.
 void finish_device_rows(Client* client, std::uint32_t row_begin, std::uint32_t row_end, std::uint64_t ns,
@@ -253,19 +253,19 @@ void end_client_frame(Client* client);
 
 // True if the frame has all its rows.
 inline bool has_all_rows(const Client& client) { return is_complete(client.merge); }
-// How long the device may work between polls of the link; shorter while an answer is timed.
+// Longest work between polls of the link; shorter while an answer is timed.
 double work_ns_max(const Client& client);
 // True if every server is in use or waits for its next attempt after a logged failure.
 bool is_settled(const Client& client);
 // True if a device without the scene should give up: for five seconds no row has come and no server with requests has
-// answered a ping, or no row has come for as long as a server may prepare its scene.
+// answered a ping, or no row has come for as long as a server may take to prepare its scene.
 bool is_cut_off(const Client& client);
-// Rows changed since the last call.
+// Returns the rows changed since the last call.
 bool take_merged_rows(Client* client, std::uint32_t* row_begin, std::uint32_t* row_end);
 
-// By the link's clock, but monotonic.
+// The link's clock, made monotonic.
 std::uint64_t client_now_ns(const Client& client);
-// Time since the begin of the current frame.
+// Time since the start of the current frame.
 inline std::uint64_t client_elapsed_ns(const Client& client) { return client_now_ns(client) - client.begin_ns; }
 // Levels by which an honest server's channels may be off.
 inline std::uint32_t pixel_tolerance(const Client& client) { return client.options.near_lossless ? 1 : 0; }

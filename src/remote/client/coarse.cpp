@@ -1,4 +1,4 @@
-// A coarse picture of a frame that takes long, which a server sends before its rows: the screen follows at once.
+// A coarse picture of a slow frame, which a server sends before its rows, so that the screen responds at once.
 #include <algorithm>
 #include <cstring>
 

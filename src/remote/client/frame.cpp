@@ -12,12 +12,12 @@
 namespace pocketray {
 namespace {
 
-// Chosen: a thirtieth of the shortest frame time of interest, and as little work as cannot delay a look by long.
+// Chosen: a thirtieth of the shortest frame time of interest, and too little work to delay a poll by long.
 constexpr std::uint64_t kWaitNs = 500'000;  // between polls while waiting for rows
 constexpr std::uint32_t kFirstPixels = 8;   // first part of a row while the cost of pixels is unknown; 0.7 ms of
                                             // `cornell` on an ARM926 (progressive.cpp)
 
-// Takes as long as the emulated device takes for `pixel_count` pixels; returns that time.
+// Waits until the emulated device would have traced `pixel_count` pixels; returns that time.
 std::uint64_t take_time_at(Client* client, const Pace& pace, std::uint64_t pixel_count, std::uint64_t begin_ns) {
   std::uint64_t elapsed = client_now_ns(*client) - begin_ns;
   if (!is_paced(pace)) return elapsed;
@@ -26,7 +26,7 @@ std::uint64_t take_time_at(Client* client, const Pace& pace, std::uint64_t pixel
   return elapsed;
 }
 
-// The same for pixels of these rows, by their relative cost.
+// Waits likewise for pixels of these rows, by their relative cost.
 std::uint64_t take_row_time(Client* client, std::uint32_t row_begin, std::uint32_t row_end, std::uint64_t pixel_count,
                             std::uint64_t begin_ns) {
   const ClientOptions& o = client->options;
@@ -40,10 +40,10 @@ struct ClientRows {
   Renderer* renderer;
   Client* client;
   std::uint32_t row_begin = 0, row_end = 0;   // of the batch, or the row rendered in parts
-  std::uint32_t column_end = 0;               // of the part
-  std::uint64_t pixel_count = 0;              // to trace, of the batch
+  std::uint32_t column_end = 0;               // end of the part
+  std::uint64_t pixel_count = 0;              // pixels to trace in the batch
   bool lights = false;                        // light was added to rows since the servers were polled
-  std::atomic<bool>* coarse_comes = nullptr;  // is set when a coarse picture has come
+  std::atomic<bool>* coarse_comes = nullptr;  // set when a coarse picture has come
 };
 
 void hand_out(ClientRows* s, const SharedSpans& spans, SpanBatch* batch) {
@@ -51,8 +51,8 @@ void hand_out(ClientRows* s, const SharedSpans& spans, SpanBatch* batch) {
   s->pixel_count = span_pixel_count(spans.spans, spans.count);
 }
 
-// The next part of a row that takes longer than the time between polls. Polls the servers between parts, so that
-// neither side takes the other for lost.
+// Takes the next part of a row that takes longer than the interval between polls. Polls the servers between parts, so
+// that neither side considers the other lost.
 void next_part(ClientRows* s, SpanBatch* batch) {
   const Client& client = *s->client;
   const DeviceRow& row = client.device_row;
@@ -65,7 +65,7 @@ void next_part(ClientRows* s, SpanBatch* batch) {
   hand_out(s, list_part(s->renderer, row.row, row.columns_done, s->column_end), batch);
 }
 
-// Takes the device's next rows. Those of which nothing must be traced are finished at once.
+// Takes the device's next rows. Rows with nothing to trace are finished at once.
 bool take_changed_rows(ClientRows* s, bool one_by_one) {
   const Renderer& renderer = *s->renderer;
   std::uint32_t rows_max = kTileRows * renderer.settings.threads;
@@ -117,7 +117,7 @@ std::uint64_t pace_batch(void* context, const SpanBatch& batch, std::uint64_t be
   return take_row_time(s.client, s.row_begin, s.row_end, span_pixel_count(batch.spans, batch.span_count), begin_ns);
 }
 
-// Records the batch's time. True if all its rows are rendered.
+// Records the batch's time. Returns true if all its rows are rendered.
 bool finish_batch(const ClientRows& s, const SpanBatch& batch) {
   Client* client = s.client;
   DeviceRow* row = &client->device_row;
@@ -135,7 +135,7 @@ bool finish_batch(const ClientRows& s, const SpanBatch& batch) {
   return true;
 }
 
-// Merges what has come.
+// Merges the rows that have come.
 bool merge_rows(void* context, const SpanBatch& batch) {
   ClientRows& s = *static_cast<ClientRows*>(context);
   Client* client = s.client;
@@ -158,10 +158,10 @@ bool merge_rows(void* context, const SpanBatch& batch) {
   return false;
 }
 
-// Prepares the frame and finds what the device must trace of each row. Sets `unchanged` and how long it took.
+// Prepares the frame and finds what the device must trace of each row. Sets `unchanged` and the time taken.
 Status prepare_rows(Renderer* renderer, Client* client, FrameStart* start) {
   const std::uint64_t begin_ns = client_now_ns(*client);
-  end_shared_rows(renderer);  // of a frame that was given up
+  end_shared_rows(renderer);  // of an abandoned frame
   RETURN_IF_ERROR(prepare_frame(renderer, start->seconds));
   const std::uint64_t posed_ns = renderer->pace.clock->now_ns();
   if (client->light.by_effect) {
@@ -192,9 +192,9 @@ Status prepare_rows(Renderer* renderer, Client* client, FrameStart* start) {
   return success();
 }
 
-// Whether servers are asked for rows of the frame before the device has posed the scene and refitted its accelerator.
-// Where nothing moves, little is gained; where nothing has changed, no rows are needed; and where a node moves the
-// camera, only the pose tells it.
+// Returns whether to ask servers for rows of the frame before the device has posed the scene and refitted its
+// accelerator. If nothing moves, little is gained; if nothing has changed, no rows are needed; and if a node moves the
+// camera, the pose must come first.
 bool asks_first(const Renderer& renderer, const Client& client, double seconds) {
   const Array<const Camera>& cameras = renderer.scene.cameras;
   const bool camera_known = renderer.camera_overridden || renderer.camera_index >= cameras.count ||

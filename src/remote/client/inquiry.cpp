@@ -9,8 +9,8 @@
 namespace pocketray {
 namespace {
 
-// Chosen: two pieces in flight keep a link busy whose round trip is shorter than a piece takes, 26 ms at 10 Mbit/s;
-// a stop after 50 ms feels immediate. Derived: kOutBytes holds two of the longest messages that a server takes.
+// Chosen: two pieces in flight keep a link busy if its round trip is shorter than a piece takes, 26 ms at 10 Mbit/s; a
+// stop after 50 ms feels immediate. Derived: kOutBytes holds two of the longest messages that a server takes.
 constexpr std::size_t kOutBytes = 1024;
 constexpr std::uint32_t kPieceBytes = 32768, kPiecesAhead = 2;  // requested while another is in flight
 constexpr std::uint64_t kLookNs = 50'000'000;                   // longest delay until a stop is noticed

@@ -17,7 +17,7 @@ struct InquiryOptions {
   std::uint64_t connect_timeout_ns = 3'000'000'000;
   std::uint64_t silence_timeout_ns = 10'000'000'000;  // without a byte
   std::uint64_t answer_timeout_ns = 60'000'000'000;   // for a complete answer
-  std::function<bool()> stopped;                      // called now and then; true stops the inquiry; may be empty
+  std::function<bool()> stopped;                      // called periodically; true stops the inquiry; may be empty
 };
 
 struct Inquiry {
@@ -38,7 +38,7 @@ Status open_inquiry(const InquiryOptions& options, platform::Link* link, const p
 
 // All scenes of the server, in its order; names are safe to print.
 Status list_scenes(Inquiry* inquiry, std::vector<SceneEntry>* entries);
-// Finds the scene `name`, or else one equal but for the file endings. Null if there is none.
+// Finds the scene `name`, or else one equal except for file endings. Null if there is none.
 const SceneEntry* find_entry(const std::vector<SceneEntry>& entries, const std::string& name);
 
 // Fetches the baked file of entry.byte_count bytes into `bytes`, which holds `byte_count_max`. Fails unless the data

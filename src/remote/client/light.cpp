@@ -19,8 +19,8 @@ bool same_view(const FrameRequest& a, const FrameRequest& b) {
          same_quality(a.settings, b.settings);
 }
 
-// A server that can render the light, has let the device wait in vain least often, and would take least; null: none.
-// One that has passed its overture as far as the measurement of its link needs no rows for that.
+// Returns the fastest server among those that can render the light and have failed to deliver it least often; null:
+// none. A server past the measurement of its link qualifies without having sent rows.
 RemoteServer* best_server(Client* client) {
   RemoteServer* best = nullptr;
   for (std::uint32_t i = 0; i < client->server_count; ++i) {
@@ -34,7 +34,7 @@ RemoteServer* best_server(Client* client) {
   return best;
 }
 
-// Whether a server may soon be able to, before the first map.
+// True if a server may soon qualify, before the first map.
 bool is_one_joining(const Client& client) {
   if (client.light.map_request.frame > 0 || client.request.frame > 1) return false;
   return std::any_of(client.servers, client.servers + client.server_count, [](const RemoteServer& server) {
@@ -43,7 +43,7 @@ bool is_one_joining(const Client& client) {
   });
 }
 
-// Asks for nothing but the light.
+// Requests only the light.
 void request_light(Client* client, RemoteServer* server) {
   Message message;
   message.frame_request = client->request;
@@ -56,8 +56,8 @@ void request_light(Client* client, RemoteServer* server) {
 
 bool is_own(const Client& client, std::uint32_t row) { return client.merge.rows[row].state == RowState::device; }
 
-// The device's next rows from `begin` on that have their light yet to come, at most `count_max`, after those of
-// servers. While the device may still take rows, those before the first that it may take.
+// Returns the device's next rows from `begin` on that still lack light, at most `count_max`, skipping servers' rows.
+// While the device may still take rows, stops at the first that it may take.
 RowRange own_rows(const Client& client, std::uint32_t begin, std::uint32_t count_max) {
   const std::uint32_t limit = has_all_rows(client) ? client.settings.height : client.merge.next_row;
   while (begin < limit && !is_own(client, begin)) ++begin;
@@ -72,7 +72,7 @@ double mean_device_part(const Client& client) {
   return sum / client.settings.height;
 }
 
-// Of rows that the device has rendered.
+// Records the time of adding light to rows that the device has rendered.
 void observe_light_added(Client* client, std::uint32_t row_begin, std::uint32_t row_end, double ns) {
   if (!client->light.shares_rows) return;
   const auto each_ns = static_cast<float>(ns / (row_end - row_begin));
@@ -80,7 +80,7 @@ void observe_light_added(Client* client, std::uint32_t row_begin, std::uint32_t 
     if (client->model.rows[row].device_ns_seen > 0) client->model.rows[row].device_ns_seen += each_ns;
 }
 
-// Takes the surfaces that the map of this frame shows, once the device's rows are traced, and the map, once it has
+// Takes the surfaces that this frame's map shows once the device's rows are traced, and the map once it has
 // come.
 void take_map(Renderer* renderer, Client* client) {
   ClientLight* l = &client->light;
@@ -115,8 +115,8 @@ void log_unfit(Client* client, const char* reason) {
   client->options.log(client->options.log_context, line);
 }
 
-// Tells once that a frame has other light than was asked for: at once where the frame waits for it, otherwise after a
-// while, as the first map comes after the first frames.
+// Logs once that a frame lacks the light asked for: at once if the frame waits for it, otherwise after a while, since
+// the first map comes after the first frames.
 void tell_unlit(Client* client) {
   ClientLight* l = &client->light;
   const FrameShare& share = client->share;
@@ -137,18 +137,18 @@ void tell_unlit(Client* client) {
   client->options.log(client->options.log_context, line);
 }
 
-// Whether the frame under way is to have a map of its own.
+// Returns whether the current frame is to have its own map.
 bool wants_map(const Client& client) {
   const ClientLight& l = client.light;
   if (!l.by_effect || l.asked.frame > 0) return false;
   const std::uint32_t frame = client.request.frame;
   const bool has_map = l.map_request.frame > 0;
   if (has_map && same_view(l.map_request, client.request)) return false;
-  // One that this frame has asked for may have been lost with its server.
+  // A map requested in this frame may have been lost with its server.
   return !has_map || l.rests || frame == l.last_asked || frame - l.last_asked >= client.options.light.every;
 }
 
-// With what its cost is worth, where the user weighs that.
+// Includes the value of its cost, if the user weighs cost.
 double predict_ns(Client* client, const RowsOfDevice& rows, const Smoothed& error) {
   const SplitProblem problem = make_problem(&client->model, client->options.wish, rows);
   const Split split = find_split(problem, &client->workspace);
@@ -156,10 +156,10 @@ double predict_ns(Client* client, const RowsOfDevice& rows, const Smoothed& erro
          (problem.weigh_cost ? static_cast<double>(split.cost) : 0);
 }
 
-// What frames shared by rows and by effect would take, by the cost model.
+// Predicts the time of frames shared by rows and by effect, by the cost model.
 void predict_ways(Client* client) {
   ClientLight* l = &client->light;
-  // Frames by effect are traced whole; what the next by rows needs is what the last of them did.
+  // Frames by effect are traced whole; the next frame by rows traces what the last of them did.
   RowsOfDevice rows;
   if (l->choice.by_effect) rows.part = l->rows_part;
   l->rows_ns = predict_ns(client, rows, l->choice.rows_error);
@@ -169,7 +169,7 @@ void predict_ways(Client* client) {
   l->effect_ns = predict_ns(client, {own_light_part(*client), index_of(*client, mapper)}, l->choice.effect_error);
 }
 
-// Both ways in turn, or the one that is predicted to be faster.
+// Alternates between both ways, or chooses the one predicted to be faster.
 bool is_effect_wanted(Client* client) {
   ClientLight* l = &client->light;
   // Servers come into use by rows; one whose rows never come in time does not keep the others from sending light.
@@ -234,7 +234,7 @@ Status choose_split(Renderer* renderer, Client* client) {
 void begin_light_frame(Client* client) {
   ClientLight* l = &client->light;
   if (l->grid.pitch == 0) return;
-  // Without the frame's first hits, nobody knows what the map shows.
+  // Without the frame's first hits, the map's surfaces are unknown.
   if (l->asked.frame > 0 && !l->has_surfaces) l->asked.frame = 0;
   l->rests = l->last.frame > 0 && same_view(l->last, client->request);
   l->last = client->request;
@@ -299,11 +299,11 @@ void take_light(Client* client, RemoteServer* server, LightMapMessage message) {
 
 void forget_light_of(Client* client, std::uint32_t server) {
   ClientLight* l = &client->light;
-  if (l->asked_server == server) l->asked.frame = 0;  // its map, if it still comes, is of no use
+  if (l->asked_server == server) l->asked.frame = 0;  // its map, if it still comes, is useless
 }
 
 bool light_rows(Renderer* renderer, Client* client) {
-  constexpr std::uint32_t kRowsAtOnce = 16;  // chosen: a fifteenth of a handheld's screen between two looks
+  constexpr std::uint32_t kRowsAtOnce = 16;  // chosen: a fifteenth of a handheld's screen between two polls
   ClientLight* l = &client->light;
   if (!l->by_effect || l->is_done) return false;
   const std::uint64_t now = client_now_ns(*client);

@@ -12,10 +12,10 @@ constexpr double kNeverNs = 1e18;
 // Measured, by `make split-table` (within 1.05 of the best fixed split on every device and link) and `make faults`
 // (within 1.05 of the device alone).
 constexpr double kCertainPart = 0.5;  // of a row's estimated time, since rows are measured several at a time
-// Of a frame's predicted time, and of the device's alone, after which the device waits for no more rows.
+// Relative to a frame's predicted time, and to the device's time alone, after which it waits for no more rows.
 constexpr double kLateFactor = 1.03;
 
-// Time for what servers may still send of the frame under way: they drop the rest of it between two chunks.
+// Time for what servers may still send of the current frame: they drop the rest of it between two chunks.
 double chunk_ns(const Client& client) {
   double bytes = 0, longest = 0;
   for (const RowModel& row : client.model.rows) bytes += static_cast<double>(row.bytes.value);
@@ -28,7 +28,7 @@ double chunk_ns(const Client& client) {
   return longest * bytes / client.settings.height;
 }
 
-// Time until a server's last row: what it is late by, once more, and then the rest at the predicted speed.
+// Time until a server's last row: its delay so far, once more, and then the rest at the predicted speed.
 double server_left_ns(const Client& client, std::uint32_t i, double due_ns, std::uint64_t now_ns) {
   const ServerFrame& f = client.servers[i].frame;
   CHECK_LT(f.row_begin, f.row_end);
@@ -41,7 +41,7 @@ double server_left_ns(const Client& client, std::uint32_t i, double due_ns, std:
   return std::max(0.0, late_ns) + (1 - part) * (whole_ns - start_ns);
 }
 
-// The same of the last of them; kNeverNs if none is to send anything.
+// Time until the last server's last row; kNeverNs if none is to send anything.
 double servers_left_ns(const Client& client, double due_ns) {
   double longest = 0;
   for (std::uint32_t i = 0; i < client.server_count; ++i)
@@ -116,12 +116,12 @@ FrameOutlook outlook_of(const Client& client) {
   const double shown_ns = client.coarse_shown ? std::min(due, static_cast<double>(client.coarse_ns)) : due;
   outlook.anew_ns = shown_ns + chunk_ns(client);
   const double elapsed = static_cast<double>(client_elapsed_ns(client));
-  // Requests that wait until a link is measured would wait again; a frame with all rows is complete at the next look.
+  // Requests held until a link is measured would be held again; a frame with all rows is complete at the next poll.
   if (elapsed < due || client.held || has_all_rows(client)) {
     outlook.left_ns = has_all_rows(client) ? 1 : std::max(1.0, due - elapsed);
     return outlook;
   }
-  // They share the rows that are left.
+  // They share the remaining rows.
   const double device_ns = preparing_left_ns(client) + rows_left_ns(client);
   const double own_ns = client.options.has_scene ? std::max(1.0, device_ns) : kNeverNs;
   outlook.left_ns = 1 / (1 / own_ns + 1 / servers_left_ns(client, due));

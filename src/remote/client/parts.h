@@ -10,10 +10,10 @@ inline std::uint32_t index_of(const Client& client, const RemoteServer* server) 
   return static_cast<std::uint32_t>(server - client.servers);
 }
 
-// Whether the frame's rows are divided among device and servers; otherwise the device has all of them.
+// True if the frame's rows are divided among device and servers; otherwise the device has all of them.
 inline bool divides_rows(const Client& client) { return !client.light.by_effect || client.light.shares_rows; }
 
-// As the cost model takes a message's price.
+// A message's price as the cost model uses it.
 constexpr double price_ratio(std::uint16_t price) { return static_cast<double>(price) / kPriceUnit; }
 
 // ---- peer.cpp
@@ -22,7 +22,7 @@ constexpr double price_ratio(std::uint16_t price) { return static_cast<double>(p
 void advance_server(Client* client, RemoteServer* server);
 // Closes the connection and tries again later. Logs the reason once until the server is in use again.
 void lose_server(Client* client, RemoteServer* server, const char* reason);
-// How long the server may be silent while an answer is due.
+// Longest silence of the server while an answer is due.
 std::uint64_t silence_limit_ns(const Client& client, const RemoteServer& server);
 // Sends queued messages as far as possible.
 void flush_server(Client* client, RemoteServer* server);
@@ -47,35 +47,35 @@ void take_pong(Client* client, RemoteServer* server, const Pong& pong);
 bool wants_quiet(const Client& client);
 // Pings servers in use to measure their link again if its figures have become doubtful.
 void measure_anew(Client* client);
-// How long it pays to idle until an answer comes, to time it precisely.
+// How long to idle for an answer in order to time it precisely.
 std::uint64_t wait_wanted_ns(const Client& client);
 
 // ---- plan.cpp
 
-// The device's time per pixel, by this frame or earlier ones; 0: unknown.
+// The device's time per pixel, from this frame or earlier ones; 0: unknown.
 double device_pixel_ns(const Client& client);
 // Plans the split and sends the requests.
 void share_rows(Client* client);
-// Requests rows from a server, without finished rows at the ends: in the order that takes least by the problem, or from
-// the bottom upward.
+// Requests rows from a server, without finished rows at the ends: in the fastest order according to the problem, or
+// from the bottom upward.
 void ask_for_rows(Client* client, RemoteServer* server, std::uint32_t row_begin, std::uint32_t row_end,
                   const SplitProblem* problem = nullptr);
-// The same, including finished rows.
+// Requests rows likewise, including finished ones.
 void request_rows(Client* client, RemoteServer* server, std::uint32_t row_begin, std::uint32_t row_end,
                   const SplitProblem* problem = nullptr);
-// Sends a request as it is, as a change of the last one if it is one. From then on its rows and light are due.
+// Sends a request as it is, if possible as a change of the last one. From then on its rows and light are due.
 void send_request(Client* client, RemoteServer* server, Message* message);
 // Gives servers that became ready during the frame a share of the rest, once no server is worth waiting for.
 void let_join(Client* client);
-// Measures the link by the frame's rows. Rows come as fast as the slower of servers and link: if the servers were
-// faster, or the link did better than estimated, their rate is its speed.
+// Measures the link by the frame's rows. Rows come as fast as the slower of servers and link allows: if the servers
+// were faster, or the link did better than estimated, their rate is its speed.
 void measure_link(Client* client);
-// Takes the link of several servers for faster, or takes that back, as the frame has shown.
+// Assumes that the link of several servers is faster, or reverts that, depending on the frame.
 void try_link(Client* client);
 
 // ---- thin.cpp: the device without the scene
 
-// Requests from idle servers the rows that no server is asked for, or that another is late with.
+// Requests from idle servers the rows that no server was asked for, or that another server is late with.
 void ask_idle_servers(Client* client);
 // Records how long this frame's rows took each server, for the next split.
 void learn_row_times(Client* client);
@@ -85,44 +85,44 @@ void learn_row_times(Client* client);
 // Call when a frame begins.
 void begin_checks(Client* client);
 // Compares a server's decoded rows [row_begin, row_end), possibly repeated ones, with those the device has rendered. On
-// a difference returns false and drops the server for good.
+// a mismatch, drops the server for good and returns false.
 bool agrees_with_device(Client* client, RemoteServer* server, std::uint32_t row_begin, std::uint32_t row_end);
 // Drops a server with wrong pixels for good: logs one line and marks its rows of this frame as missing.
 void drop_liar(Client* client, RemoteServer* server, const char* proof);
 
 // ---- witness.cpp: checks without the scene
 
-// As agrees_with_device(), but with rows of other servers; on a difference asks a third later.
+// Compares against other servers' rows; on a mismatch, a third server decides.
 void compare_with_others(Client* client, RemoteServer* server, std::uint32_t row_begin, std::uint32_t row_end);
-// As is_verified().
+// is_verified() without the scene.
 bool is_witnessed(Client* client);
 
 // ---- frame.cpp
 
-// Prepares the device for the frame under way.
+// Prepares the device for the current frame.
 void prepare_device(Renderer* renderer, Client* client);
 // Packs rows of the device's picture into the merged one.
 void pack_device_rows(const Renderer& renderer, Client* client, std::uint32_t row_begin, std::uint32_t row_end);
-// Takes as long as the emulated device takes for `pixel_count` pixels; returns that time.
+// Waits until the emulated device would have traced `pixel_count` pixels; returns that time.
 std::uint64_t take_time(Client* client, std::uint64_t pixel_count, std::uint64_t begin_ns);
 
 // ---- outlook.cpp
 
-// Time the device would need for the missing rows, estimated from this frame and from earlier ones, whichever is
-// longer.
+// Time the device would need for the missing rows, estimated from this frame and from earlier ones; the longer of
+// both.
 double rows_left_ns(const Client& client);
-// Time it will need to prepare the frame, as far as it has not yet.
+// Time left to prepare the frame.
 double preparing_left_ns(const Client& client);
-// Time it will need to decode the missing rows.
+// Time left to decode the missing rows.
 double decoding_left_ns(const Client& client);
 
-// Derived: a network may cost 5 % of a frame, of which spot checks take 1 and the first estimate of a link what is
-// left.
+// Derived: a network may cost 5 % of a frame, of which spot checks take 1 and the first estimate of a link the
+// rest.
 constexpr double kWaitShare = 0.03;  // of a frame's time that the device may wait in vain
 // How much longer the device may idle in this frame and still finish within 1 + kWaitShare times its time alone, even
-// if nothing more arrives. The estimate is conservative: rows count with their time in this frame or, scaled down as
-// far as this frame's rows are cheaper, in earlier frames. Rows the device never rendered count kCertainPart of the
-// mean; arrived rows count `come_share` of the time they saved.
+// if nothing more arrives. The estimate is conservative: rows count with their time in this frame or, scaled down by as
+// much as this frame's rows are cheaper, in earlier frames. Rows that the device never rendered count kCertainPart of
+// the mean; arrived rows count `come_share` of the time they saved.
 double time_to_spare(const Client& client, double come_share);
 // True if the servers' rows are due before the device could render one and decode the others, or late by less than it
 // takes to render one, and the device would still finish about as early as alone if none arrived.
@@ -130,11 +130,11 @@ bool is_worth_waiting(const Client& client);
 
 // ---- coarse.cpp
 
-// The next request asks for a coarse picture if a frame of that time wants one and none is asked for; 0: unknown.
+// Makes the next request ask for a coarse picture if a frame of that time needs one and none is requested; 0: unknown.
 void want_coarse(Client* client, double frame_ns);
-// True while it may come any moment: at most for a tenth of the frame, since looking often slows the device.
+// True while it may come any moment: at most for a tenth of the frame, since frequent polling slows the device.
 bool awaits_coarse(const Client& client);
-// Puts it where rows are missing.
+// Shows the coarse picture where rows are missing.
 void show_coarse(Client* client, const CoarsePicture& coarse);
 
 // ---- light.cpp
@@ -142,28 +142,28 @@ void show_coarse(Client* client, const CoarsePicture& coarse);
 // Call when a frame begins, after choose_split(), and when it ends.
 void begin_light_frame(Client* client);
 void end_light_frame(Client* client);
-// Of the time of the device's rows, what they take with its own light and the map's.
+// Device time per row in by-effect mode, as a fraction of a full row.
 double own_light_part(const Client& client);
-// Index of the server that is asked for the light of the frame under way with its next request; kNone: none is.
+// Index of the server whose next request asks for the current frame's light; kNone: none.
 std::uint32_t mapper_of_frame(Client* client);
-// Makes a request to that server one for the light, too. True if it is.
+// Adds the light to a request if it goes to that server. Returns true if so.
 bool want_light_with(Client* client, RemoteServer* server, FrameRequest* request);
-// Asks that server, if it has no rows to send.
+// Requests the light from that server, if it has no rows to send.
 void ask_for_light(Client* client);
-// Whether the light of its last request is still to come. It comes before the rows.
+// True if the light of its last request is still due. It comes before the rows.
 inline bool awaits_light(const RemoteServer& server) { return server.light_due > 0 && server.asked.light_pitch > 0; }
 void take_light(Client* client, RemoteServer* server, LightMapMessage message);
-// The server will not send the light that it was asked for, or too late.
+// Call when the server will not send the requested light, or too late.
 void forget_light_of(Client* client, std::uint32_t server);
 // Adds light to the next rows that the device has traced, once it has no more to trace or the frame has all its rows.
-// False: there are none, or their light is still to come.
+// Returns false if there are none, or their light is still due.
 bool light_rows(Renderer* renderer, Client* client);
-// Whether a frame that has all its rows has what light it gets; false: some is due, or to be added.
+// True if a complete frame has all the light it gets; false: some is due, or still to be added.
 bool is_lit(const Client& client);
 
 // ---- client.cpp
 
-// Rows of client->pixels have changed.
+// Call when rows of client->pixels have changed.
 void mark_dirty(Client* client, std::uint32_t row_begin, std::uint32_t row_end);
 // Call when rows are decoded; `byte_count` is their size on the wire.
 void accept_chunk(Client* client, RemoteServer* server, const RowChunk& chunk, std::uint32_t byte_count);

@@ -10,12 +10,12 @@
 namespace pocketray {
 namespace {
 
-// Chosen: seldom enough to cost nothing, often enough that a server returns within a second. `make faults` tests that a
+// Chosen: rarely enough to cost nothing, often enough that a server returns within a second. `make faults` tests that a
 // flapping server is retried ever less often.
 constexpr std::uint64_t kIdlePingNs = 500'000'000;  // between pings of a server that is asked for nothing
-// A connection useful for this many times the wait before it was sound, so the next attempt comes soon.
+// A connection that was useful for this many times the wait before it was sound, so the next attempt comes soon.
 constexpr std::uint64_t kLastingWaits = 10;
-// Per server and poll, and no more rows than a picture has. Derived: about twice the messages of 240 rows in the
+// Limit per server and poll, besides a picture's number of rows. Derived: about twice the messages of 240 rows in the
 // smallest chunks (kChunkRowsMin).
 constexpr std::uint32_t kLookMessages = 256;
 void tell(Client* client, const char* format, ...) __attribute__((format(printf, 2, 3)));
@@ -79,16 +79,16 @@ void take_scene_entry(Client* client, RemoteServer* server, const SceneEntry& en
   send_ping(client, server, 0);
 }
 
-// True if they are the next rows of the last request.
+// True if these are the next rows of the last request.
 bool is_next(const RemoteServer& server, const RowChunk& chunk) {
   const std::uint32_t end = std::uint32_t(chunk.row_begin) + chunk.row_count;
   return chunk.frame == server.asked.frame && end == server.due.row_end && chunk.row_begin >= server.due.row_begin &&
          chunk.row_count <= server.due_rows;
 }
 
-// True if the server owes these rows: the next of the last request, in its order, or rows in flight when that replaced
-// an earlier request. No row is owed twice, which bounds what a server can make the device decode. A chunk of the last
-// request ends the earlier ones.
+// Returns whether the server owes these rows: the next of the last request, in its order, or rows in flight when that
+// replaced an earlier request. No row is owed twice, which bounds what a server can make the device decode. A chunk of
+// the last request ends the earlier ones.
 bool takes_owed_rows(RemoteServer* server, const RowChunk& chunk) {
   if (is_next(*server, chunk)) {
     pass_rows(server->asked, chunk.row_count, &server->due);
@@ -138,13 +138,13 @@ void take_chunk(Client* client, RemoteServer* server, RowChunk chunk) {
   accept_chunk(client, server, chunk, bytes);
 }
 
-// Like rows, it may be that of an earlier request.
+// Like rows, it may belong to an earlier request.
 void take_coarse(Client* client, RemoteServer* server, CoarsePicture coarse) {
   if (server->coarse_due == 0) return lose_server(client, server, kUnasked);
   coarse.frame = frame_of(coarse.frame, server->asked.frame);
   server->coarse_due = coarse.frame == server->asked.frame ? 0 : server->coarse_due - 1;
   if (coarse.pixels.count != coarse_bytes(client->settings.width, client->settings.height, client->options.format))
-    return lose_server(client, server, "it sent a coarse picture of another size");
+    return lose_server(client, server, "it sent a coarse picture of the wrong size");
   server->frame.bytes += coarse_prefix_bytes() + coarse.pixels.count;
   if (coarse.frame == client->request.frame && !client->complete) show_coarse(client, coarse);
 }
@@ -173,8 +173,8 @@ bool is_awaited(const Client& client, const RemoteServer& server) {
   return server.phase != ServerPhase::waiting;
 }
 
-// Whether light has been overdue for long enough to give the server up, however well it answers pings. A device that
-// did not look for long, as one that was asleep, gives it half of the time again.
+// Returns whether light has been overdue for long enough to give up the server, however well it answers pings. If the
+// device has not polled for long, for example because it slept, the server gets half of the time again.
 bool is_light_overdue(Client* client, RemoteServer* server) {
   const std::uint64_t limit = client->options.prepare_timeout_ns, now = client_now_ns(*client);
   if (server->light_asked_ns == 0 || now - server->light_asked_ns < limit || server->more) return false;
@@ -225,7 +225,7 @@ void send(Client* client, RemoteServer* server, const Message& message) {
 const char* wire_error_text(WireError code) {
   switch (code) {
     case WireError::wrong_version:
-      return "it speaks another protocol version: update one of the two";
+      return "it speaks a different protocol version: update one of the two";
     case WireError::malformed:
       return "it could not decode a message";
     case WireError::unknown_scene:
@@ -328,7 +328,7 @@ void advance_server(Client* client, RemoteServer* server) {
   if (is_light_overdue(client, server)) return lose_server(client, server, "it did not send its light in time");
   if (!is_awaited(*client, *server)) {
     server->timer = platform::link_timer(now, silence_limit_ns(*client, *server));
-    // Where servers send light, one may wait for its first rows for long.
+    // Where servers send light, one may wait long for its first rows.
     const bool is_spare = server->phase >= ServerPhase::probing && client->options.light.split != SplitKind::rows;
     if ((server->phase == ServerPhase::ready || is_spare) && now >= server->ping_due_ns) {
       server->ping_due_ns = now + kIdlePingNs;
@@ -337,7 +337,7 @@ void advance_server(Client* client, RemoteServer* server) {
   } else {
     std::uint64_t left = platform::link_timer_left(&server->timer, client_now_ns(*client));
     std::uint64_t half = silence_limit_ns(*client, *server) / 2;
-    // The server may be alive but too busy for rows: half way through the limit it is pinged and gets the other half to
+    // The server may be alive but too busy for rows: half-way through the limit it is pinged and gets the other half to
     // answer, even if the device was too busy to poll for longer than that.
     if (server->phase >= ServerPhase::probing && server->ping_id == 0 && left < half) {
       server->timer = platform::link_timer(client_now_ns(*client), half);

@@ -1,31 +1,31 @@
 // Measures links by pings: round trip and time per byte. An answer with a payload counts only if the device polled when
-// it came and no rows were on the link; so the device polls often then and requests rows a moment later.
+// it came and no rows were on the link; so the device then polls often and requests rows a moment later.
 #include "base/check.h"
 #include "remote/client/parts.h"
 
 namespace pocketray {
 namespace {
 
-// Measured together, by `make split-table` (a link measured wrongly shows as a split far from the best one) and
-// `make faults` (frames while measuring stay within 1.05 of the device alone). Waits are shorter than a display frame,
-// or than the time until a peer counts as lost, silence_timeout_ns.
+// Measured together, by `make split-table` (a wrongly measured link shows as a split far from the best one) and `make
+// faults` (frames while measuring stay within 1.05 of the device alone). Waits are shorter than a display frame, or
+// than the time until a peer counts as lost, silence_timeout_ns.
 constexpr std::uint32_t kPings = 3;            // without a payload; the fastest is the round trip
 constexpr std::uint32_t kPingsMissedMax = 24;  // after which unwatched answers must do
 constexpr double kUnwatchedInverse = 8,
                  kSizedUnwatchedInverse = 16;  // inverse fraction of an answer's time without polls
 constexpr double kSizingLookNs = 250e3;        // between polls while an answer with a payload is timed
-constexpr double kLongWorkNs = 100e6;  // and otherwise, so that servers and device do not take each other for lost
-constexpr double kCoarseLookNs = 4e6;  // chosen: while a coarse picture is due, a quarter of a display frame
+constexpr double kLongWorkNs = 100e6;          // otherwise, so that neither servers nor device consider the other lost
+constexpr double kCoarseLookNs = 4e6;          // chosen: while a coarse picture is due, a quarter of a display frame
 constexpr std::uint64_t kQuietNs = 400'000'000;  // longest hold on others' rows while a link is measured,
 constexpr std::uint64_t kAnewQuietNs = 200'000'000,
-                        kAnewNs = 3'000'000'000;   // and while it is measured again, at this interval
-constexpr double kAnewAnswerNs = 100e6;            // longest expected answer of a repeated measurement
-constexpr double kScaledMax = 1.08;                // scaled by others' rows beyond this, a link is measured again;
-constexpr double kScaledAloneMax = 1.5;            // the same for a single server's rows
-constexpr std::uint32_t kPingBytesLeast = 1024;    // payload to measure the bandwidth; doubles each time
-constexpr std::uint32_t kPingBytesMost = 16384;    // up to this, or until the answer
-constexpr double kPingTripsMin = 8;                // takes this many times one without payload
-constexpr std::uint64_t kPingWaitNs = 20'000'000;  // longest idle wait for an answer,
+                        kAnewNs = 3'000'000'000;         // and while it is measured again, at this interval
+constexpr double kAnewAnswerNs = 100e6;                  // longest expected answer of a repeated measurement
+constexpr double kScaledMax = 1.08;                      // link is measured again if others' rows scale it beyond this,
+constexpr double kScaledAloneMax = 1.5;                  // or a single server's rows beyond this
+constexpr std::uint32_t kPingBytesLeast = 1024;          // payload to measure the bandwidth; doubles each time
+constexpr std::uint32_t kPingBytesMost = 16384;          // up to this, or until the answer
+constexpr double kPingTripsMin = 8;                      // takes this many times one without payload
+constexpr std::uint64_t kPingWaitNs = 20'000'000;        // longest idle wait for an answer,
 constexpr std::uint64_t kSizedPingWaitNs = 200'000'000;  // and for one with a payload, over a slow link
 constexpr double kNsPerByteMin = 1e-3;                   // a link faster than a terabyte per second was not measured
 
@@ -57,20 +57,20 @@ bool is_watched(const Client& client, double ns, std::uint32_t byte_count) {
   return inverse * static_cast<double>(client.unwatched_ns) < ns;
 }
 
-// And if it has a payload, it was alone on the link; not required without the scene.
+// True if, in addition, an answer with a payload was alone on the link; not required without the scene.
 bool is_sound(const Client& client, const RemoteServer& server, double ns, std::uint32_t byte_count) {
   bool alone = server.ping_alone && !rows_are_under_way(client);
   return is_watched(client, ns, byte_count) && (alone || byte_count == 0 || !client.options.has_scene);
 }
 
-// Time per byte from the time of an answer.
+// Derives the time per byte from the time of an answer.
 double ns_per_byte_of(const RemoteServer& server, double ns, std::uint32_t byte_count) {
   CHECK_GT(byte_count, 0u);
   double per_byte = (ns - server.round_trip_ns) / byte_count;
   return per_byte > kNsPerByteMin ? per_byte : kNsPerByteMin;
 }
 
-// Answers of the overture: first without a payload, then with enough to tell bandwidth from latency.
+// Takes answers of the overture: first without a payload, then with enough to tell bandwidth from latency.
 void take_measuring_pong(Client* client, RemoteServer* server, double ns, std::uint32_t byte_count) {
   bool sound = is_sound(*client, *server, ns, byte_count), waits = byte_count == 0 && server->pings_answered >= kPings;
   if (!waits && !sound && ++server->pings_missed < kPingsMissedMax)
@@ -87,8 +87,8 @@ void take_measuring_pong(Client* client, RemoteServer* server, double ns, std::u
   enter(client, server, ServerPhase::probing);
 }
 
-// Measures the link of a server in use again. An answer that was seen late, delayed by rows, or no later than twice one
-// without a payload, whose time may have been too long, still bounds the link from below.
+// Measures the link of a server in use again. An answer that was seen late, delayed by rows, or at most twice as late
+// as one without a payload, whose time may have been too long, still bounds the link from below.
 void take_ready_pong(Client* client, RemoteServer* server, double ns, std::uint32_t byte_count) {
   server->quiet_until_ns = 0;
   ServerModel* model = &client->model.servers[index_of(*client, server)];

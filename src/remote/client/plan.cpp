@@ -9,26 +9,26 @@
 namespace pocketray {
 namespace {
 
-// Measured by `make split-table` unless said otherwise: with less, noise of single frames moves the split.
+// Measured by `make split-table` unless stated otherwise: with lower values, noise of single frames moves the split.
 constexpr double kGapsMin = 4;         // polls in which rows must arrive for their time to count
 constexpr double kDisproved = 1.25;    // a link faster than estimated by more than this is not noise
-constexpr double kLinkBound = 1.15;    // rows that take this much longer than on the servers are bound by the link
-constexpr double kLinkLimited = 0.97;  // of a frame's time: with more, its split is bound by the link
-// Time to send all rows over that to trace a server's: with less, the link keeps up with several servers. At .9, some
-// splits are off by 7 %.
+constexpr double kLinkBound = 1.15;    // rows that take this much longer than on the servers are limited by the link
+constexpr double kLinkLimited = 0.97;  // of a frame's time: above this, the link limits the split
+// Time to send all rows relative to the time to trace a server's: below this, the link keeps up with several servers.
+// At .9, some splits are off by 7 %.
 constexpr double kLightLink = 0.7;
-constexpr double kRaise = 0.5;  // of a start's distance from its lower bound, as jitter raises that for single frames
-constexpr double kLinkFaster = 0.95, kLinkKept = 1.02;  // chosen: a trial that fails costs a twentieth of a frame
-constexpr std::uint64_t kLinkRestMax = 64;  // frames without such trials; chosen: they cost a thousandth then
+constexpr double kRaise = 0.5;  // of a start's distance from its lower bound, since jitter raises it in single frames
+constexpr double kLinkFaster = 0.95, kLinkKept = 1.02;  // chosen: a failed trial costs a twentieth of a frame
+constexpr std::uint64_t kLinkRestMax = 64;  // frames without such trials; chosen: they then cost a thousandth
 constexpr std::uint32_t kProbeRowsMax = 16, kProbeDivisor = 15;  // of the rows: 16 of 240
 static_assert(kOrderRunsMax <= kRunCountMax && kRunRowsMax <= UINT8_MAX, "a request can express every order");
-// Nanoseconds per byte beyond which coded rows pay, until the device knows its own. Measured
-// (tests/bench/device/codec_cost.py), per pixel of RGB565: coding saves 1.9 bytes, and decoding takes a Cortex-A7 75
-// ns, an ARM926 250 ns, for which 40 and 130 ns a byte pay.
+// Nanoseconds per byte above which coding rows pays, until the device knows its own. Measured
+// (tests/bench/device/codec_cost.py), per pixel of RGB565: coding saves 1.9 bytes, and decoding takes a Cortex-A7 75 ns
+// and an ARM926 250 ns, so it pays above 40 and 130 ns per byte.
 constexpr double kCodeNsPerByte = 60;
-constexpr double kCodeMargin = 1.25;  // chosen: single frames decode faster or slower by less
+constexpr double kCodeMargin = 1.25;  // chosen: exceeds the variation of decoding times between frames
 
-// Sets the order of a request's rows: the one in which the server's tracing and sending overlap best.
+// Sets the order of a request's rows in which the server's tracing and sending overlap best.
 void set_order(const SplitProblem& p, std::uint32_t server, FrameRequest* request) {
   CHECK_LT(server, p.server_count);
   const ServerTables& t = p.servers[server];
@@ -179,7 +179,7 @@ void share_rows(Client* client) {
   RowsOfDevice own;
   if (by_effect) own = {own_light_part(*client), mapper_of_frame(client)};
   SplitProblem problem = make_problem(&client->model, client->options.wish, own);
-  // Times count from the begin of the frame: the device can render once it is prepared, servers start when asked.
+  // Times count from the start of the frame: the device can render once it is prepared, servers start when asked.
   const std::uint64_t elapsed_ns = client_elapsed_ns(*client);
   auto from_now = [&](std::uint64_t* start_ns) { *start_ns = std::min(kRowTableMax, *start_ns + elapsed_ns); };
   if (client->prepared)
@@ -202,7 +202,7 @@ void share_rows(Client* client) {
   for (std::uint32_t& boundary : alone.boundary) boundary = problem.row_count;
   predict_split(problem, &alone);
   client->alone_ns = client->share.local_ns = static_cast<double>(alone.time_ns);
-  // To users, what the device would take for all of the light.
+  // Reports the device's time for all of the light.
   if (by_effect)
     client->share.local_ns += static_cast<double>(problem.device_ns[problem.row_count]) * (1 / own.part - 1);
   auto rows_of = [&](std::uint32_t i) { return client->split.boundary[i + 1] - client->split.boundary[i]; };
@@ -211,7 +211,7 @@ void share_rows(Client* client) {
     if (rows_of(i) > rows_of(largest)) largest = i;
   for (std::uint32_t i = 0; i < client->server_count; ++i) {
     RemoteServer* server = &client->servers[i];
-    if (server->phase != ServerPhase::ready) continue;  // for others the overture's figure stands
+    if (server->phase != ServerPhase::ready) continue;  // for others, the overture's figure stands
     server->ns_per_byte = static_cast<double>(client->model.servers[i].ns_per_byte.value);
     if (i == largest) want_coarse(client, client->share.predicted_ns);
     ask_for_rows(client, server, client->split.boundary[i], client->split.boundary[i + 1], &problem);
@@ -241,7 +241,7 @@ void let_join(Client* client) {
 
 namespace {
 
-// A link is at least as fast as its bytes came: corrects an estimate below that.
+// A link is at least as fast as its bytes came: corrects estimates below that.
 void measure_own_links(Client* client) {
   for (std::uint32_t i = 0; i < client->server_count; ++i) {
     const ServerFrame& f = client->servers[i].frame;
@@ -252,9 +252,9 @@ void measure_own_links(Client* client) {
   }
 }
 
-// All of a server's rows came since they were asked for, however rarely the device polled, so its link is at least
-// that fast.
-// Its actual speed must be measured.
+// All of a server's rows came since they were requested, however rarely the
+// device polled, so its link is at least that fast. Its actual speed must be
+// measured.
 void bound_own_links(Client* client) {
   for (std::uint32_t i = 0; i < client->server_count; ++i) {
     RemoteServer* server = &client->servers[i];
@@ -270,11 +270,11 @@ void bound_own_links(Client* client) {
   }
 }
 
-// What a frame's rows took on a link that all servers share.
+// Times of a frame's rows on a link that all servers share.
 struct LinkUse {
   std::uint32_t server_count = 0;     // that sent rows
   double sent_ns = 0, chunks_ns = 0;  // to send their rows, and a chunk of each
-  double render_ns = 0;               // the longest time to trace a server's rows
+  double render_ns = 0;               // longest time to trace a server's rows
 };
 
 double chunk_part(const ServerModel& model, const ServerFrame& f) {
@@ -299,10 +299,10 @@ LinkUse link_use(const Client& client) {
   return use;
 }
 
-// A server's start, preparation of the frame included, is what its rows took beyond their work and bytes. Where others
+// A server's start, preparation of the frame included, is the time of its rows beyond their work and bytes. If others
 // share the link, they may have waited for it, so this bounds the start from above. A round trip and the preparation
-// that the server states bound it from below; so do its rows, where the link keeps up, as its last chunk then waits for
-// one of each other server at most.
+// stated by the server bound it from below; so do its rows, if the link keeps up, since its last chunk then waits for
+// at most one chunk of each other server.
 void measure_starts(Client* client) {
   const LinkUse use = link_use(*client);
   const bool keeps_up = is_known(client->model.link_ns_per_byte) && use.sent_ns < kLightLink * use.render_ns;
@@ -328,7 +328,7 @@ void measure_starts(Client* client) {
   }
 }
 
-// Bytes per nanosecond that a server produces after its first chunk. Arrivals count from that one, whose rows may be
+// Bytes per nanosecond that a server produces after its first chunk. Arrivals count from that chunk, whose rows may be
 // far cheaper than the rest.
 double rate_of(const ServerFrame& f) {
   if (f.render_behind_ns > 0) return static_cast<double>(f.bytes_behind) / f.render_behind_ns;
@@ -345,7 +345,7 @@ void measure_link(Client* client) {
   if (bytes == 0 || ns < kGapsMin * static_cast<double>(a.gap_ns_max)) return;
   measure_own_links(client);
   double rate = 0;     // bytes per nanosecond from all servers
-  double longest = 0;  // that a server takes to trace its rows and to send them one after the other
+  double longest = 0;  // longest time of a server to trace its rows and then send them
   std::uint32_t count = 0, last = 0;
   for (std::uint32_t i = 0; i < client->server_count; ++i) {
     const ServerFrame& f = client->servers[i].frame;
@@ -359,13 +359,13 @@ void measure_link(Client* client) {
   Smoothed* link = &client->model.link_ns_per_byte;
   double before = is_known(*link) ? static_cast<double>(link->value) : 0;
   bool link_bound = rate > 0 && ns / bytes * rate > kLinkBound, better = ns / bytes < before;
-  // Several servers start and end apart, which stretches the time between the first and the last of their rows.
+  // Servers start and end at different times, which stretches the time between their first and last rows.
   if (count > 1 && ns < kLinkBound * longest) link_bound = false;
   if (count == 0 || !(link_bound || better)) return;
   smooth(link, ns / bytes);
   if (count == 1 && link_bound) observe_transfer(&client->model, last, bytes, ns);
   if (!(before > 0)) return;
-  // Each link is measured by itself once its figure has become doubtful.
+  // Each link is measured separately once its figure has become doubtful.
   double factor = static_cast<double>(link->value) / before;
   if (count == 1) {
     if (link_bound) client->servers[last].scaled *= factor;

@@ -55,7 +55,7 @@ Status find_on(Inquiry* inquiry, const std::string& name, SceneEntry* entry) {
   return success();
 }
 
-// Fetches into the scene arena, if it fits. The size is the server's claim, 64 bits, of which this CPU may address only
+// Fetches into the scene arena, if it fits. The size is the server's claim: 64 bits, of which this CPU may address only
 // 32.
 Status fetch(Inquiry* inquiry, const std::string& name, const SceneEntry& entry, Renderer* renderer,
              SceneSource* source) {
@@ -105,7 +105,7 @@ Status load(ConnectedServers* s, const std::string& name, Renderer* renderer, Sc
                               : load_from_servers(s, name, renderer, source, storage);
 }
 
-// Which scene it is, told from where it lies.
+// Identifies the loaded scene by its source.
 Status name_loaded(ConnectedServers* s, SceneSource* source, Renderer* renderer) {
   Status status = identify_scene(*source, renderer, &s->scene);
   s->is_named = status.ok;
@@ -115,7 +115,7 @@ Status name_loaded(ConnectedServers* s, SceneSource* source, Renderer* renderer)
   return status;
 }
 
-// Hash of a scene that did not fit: a file by its bytes, a built-in scene by asking a server that has it.
+// Gets the hash of a scene that did not fit: a file's from its bytes, a built-in scene's from a server that has it.
 Status name_without_loading(ConnectedServers* s, const std::string& name) {
   bool is_builtin = find_builtin(name.c_str()) != nullptr;
   if (!is_builtin && is_baked_name(name)) return hash_file(name, &s->scene);
@@ -155,7 +155,7 @@ Status find_view(ConnectedServers* s, const ViewQuery& query) {
   return failure("%s", reasons.c_str());
 }
 
-// The view from --camera, which counts in the model's own coordinates: their origin is what servers know.
+// Gets the view from --camera, which uses the model's own coordinates: their origin is what servers know.
 Status find_stated_view(ConnectedServers* s, const std::string& camera, ViewQuery* query) {
   const bool measures = query->measure_exposure;
   query->camera_stated = query->measure_exposure = false;
@@ -183,7 +183,7 @@ Status open_thin(ConnectedServers* s, const CommonOptions& o, const OutputNeed& 
     return failure("--fov needs the scene on this device: raise --memory to hold it, or use --camera");
   ViewQuery query;
   if (o.animation.size() >= kNameBytes)
-    return failure("--animation is '%.60s': no animation has so long a name", o.animation.c_str());
+    return failure("--animation is '%.60s': no animation has a name that long", o.animation.c_str());
   std::snprintf(query.animation, sizeof query.animation, "%s", o.animation.c_str());
   query.settings = opened->renderer.settings;
   query.camera_index = static_cast<std::uint16_t>(o.camera_index);  // below kCameraCountMax: options are checked
@@ -248,7 +248,7 @@ Status open_scene_or_leave_it(Servers* servers, const CommonOptions& common, con
   end_client(s);
   s->is_named = s->is_thin = false;
   hooks.load = [s](const std::string& name, Renderer* renderer, SceneSource* source, SceneStorage* storage) {
-    renderer->animation = 0;  // the scene is that of the servers, even if nothing moves in it
+    renderer->animation = 0;  // the scene is the servers', even if nothing moves in it
     return load(s, name, renderer, source, storage);
   };
   hooks.loaded = [s, opened](const SceneSource&, Renderer* renderer) {

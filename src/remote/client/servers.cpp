@@ -18,7 +18,7 @@ namespace pocketray {
 namespace {
 
 constexpr platform::LinkBackend const& kNet = platform::kTcpLink;
-// Chosen: the longest after which a picture still seems to follow the buttons at once.
+// Chosen: the longest delay after which a picture still seems to follow the buttons at once.
 constexpr double kLongFrameNs = 100e6;
 // Chosen: pictures in files are worth waiting for, but not for a server that never sends their light.
 constexpr std::uint64_t kLightWaitNs = 60'000'000'000;
@@ -87,7 +87,7 @@ Status check(const ServersOptions& o) {
   if (o.split != "rows" && o.addresses.empty())
     return failure("--split shares frames with render servers: add --server");
   if (o.split != "rows" && o.device_share != kBestShare)
-    return failure("--share and --split %s both say what the device renders: drop one of them", o.split.c_str());
+    return failure("--share and --split %s both set what the device renders: drop one of them", o.split.c_str());
   bool any = o.price > 0 || o.energy_pixel > 0 || o.energy_byte > 0 || o.cost_weight_ms > 0 || o.cost_cap > 0;
   if (o.addresses.empty() && (any || o.device_share != kBestShare))
     return failure("shares, prices and energies apply to render servers: add --server");
@@ -210,14 +210,14 @@ bool advance_frame(Servers* servers, Renderer* renderer, std::uint64_t slice_ns,
 
 void tend_client(Servers* servers) { advance_client(&connected(servers)->client, 0); }
 
-// Servers were asked for rows of a picture and gave none: they may not give any of the next one, either.
+// True if servers were asked for rows of a picture and sent none: they may send none of the next one, either.
 bool gave_nothing(const FrameShare& share) {
   auto some = [](std::uint32_t count) { return count > 0; };
   return std::any_of(std::begin(share.row_end), std::end(share.row_end), some) &&
          std::none_of(std::begin(share.server_rows), std::end(share.server_rows), some);
 }
 
-// Servers count as in use once one has passed its overture, as a refined picture shows sooner than a complete one.
+// Servers count as in use once one has passed its overture, since a refined picture shows sooner than a complete one.
 ServersState state_of(const Servers& servers) {
   const ConnectedServers& s = connected(servers);
   const Client& client = s.client;
@@ -262,7 +262,7 @@ void add_server_lines(const ConnectedServers& s, HudText* text) {
     if (f.by_effect && server.phase == ServerPhase::ready && f.row_end[i] == 0)
       add_hud_line(text, "%s light  %.1f kB", server.address.text, static_cast<double>(f.server_bytes[i]) * 1e-3);
     else if (server.phase == ServerPhase::ready && f.row_end[i] > 0)
-      add_hud_line(text, "%s rows %u-%u, gave %u  %.1f kB", server.address.text, f.row_begin[i], f.row_end[i] - 1,
+      add_hud_line(text, "%s rows %u-%u, sent %u  %.1f kB", server.address.text, f.row_begin[i], f.row_end[i] - 1,
                    f.server_rows[i], static_cast<double>(f.server_bytes[i]) * 1e-3);
     else
       add_hud_line(text, "%s %s", server.address.text, server.lied ? "sent wrong pixels" : phase_text(server.phase));
@@ -280,7 +280,7 @@ void add_share_lines(const ConnectedServers& s, HudText* text) {
     else if (s.is_thin)
       add_hud_line(text, "%.1f ms  all by servers", f.measured_ns * 1e-6);
     else if (f.by_effect)
-      add_hud_line(text, f.has_light ? "%.1f ms  shared by effect, light of %u frames before" : "%.1f ms  no light yet",
+      add_hud_line(text, f.has_light ? "%.1f ms  shared by effect, light from %u frames ago" : "%.1f ms  no light yet",
                    f.measured_ns * 1e-6, f.light_age);
     else
       add_hud_line(text, "%.1f ms  device alone so far", f.measured_ns * 1e-6);

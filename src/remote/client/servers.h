@@ -15,8 +15,8 @@ struct ConnectedServers : Servers {
   std::vector<std::max_align_t> tcp_memory, radio_memory, inquiry_memory;
   platform::Link* tcp = nullptr;
   platform::Link* link = nullptr;          // tcp, or the emulated radio over it
-  platform::Link* inquiry_link = nullptr;  // an encrypted one over it, for questions before the first frame; null: link
-  platform::Link* client_link = nullptr;   // the same for the client, in its arena
+  platform::Link* inquiry_link = nullptr;  // encrypted link over it, for questions before the first frame; null: link
+  platform::Link* client_link = nullptr;   // likewise for the client, in its arena
   platform::SharedKey key;                 // if options.key
   ContentHash scene;
   bool is_named = false;  // `scene` is the hash of the open scene
@@ -42,7 +42,7 @@ std::size_t client_tls_need(const ConnectedServers& servers);
 // Closes the client's connections, if any.
 void end_client(ConnectedServers* servers);
 
-// Functions of the backend in scene.cpp.
+// The backend's functions in scene.cpp.
 Status open_scene_or_leave_it(Servers* servers, const CommonOptions& common, const OutputBytes& output_bytes,
                               OpenScene* opened);
 void stop_opening(Servers* servers);

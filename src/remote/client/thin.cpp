@@ -1,4 +1,4 @@
-// A device without the scene: servers render every row, and rows that one fails to send are requested from another.
+// A device without the scene: servers render every row, and rows that one fails to deliver are requested from another.
 #include <algorithm>
 
 #include "base/check.h"
@@ -10,7 +10,7 @@ namespace {
 // Chosen; ClientOptions::connect_timeout_ns is 3 s.
 constexpr std::uint64_t kCutOffNs = 5'000'000'000;  // without rows; longer than connecting may take
 // A server silent for the time of kSilentChunks of its chunks counts as stopped, but not before kSilentNsMin, longer
-// than the pauses of a busy system. Chosen: after fewer chunks, rows that are only late would be requested twice; after
+// than the pauses of a busy system. Chosen: with fewer chunks, rows that are merely late would be requested twice; with
 // more, they would be missing for longer.
 constexpr double kSilentChunks = 4, kSilentNsMin = 30e6;
 
@@ -45,7 +45,7 @@ Run longest_run(const Client& client, std::uint32_t begin, std::uint32_t end, st
 
 bool is_idle(const RemoteServer& server) { return server.phase == ServerPhase::ready && !server.frame.open; }
 
-// Rows per time; the same for all while unknown.
+// Rows per time; equal for all while unknown.
 double speed_of(const Client& client, const RemoteServer& server) {
   double sum = 0, count = 0;
   for (std::uint32_t i = 0; i < client.server_count; ++i)
@@ -73,8 +73,8 @@ void divide(Client* client, const Run& run) {
   }
 }
 
-// Rows requested only from this server that another should render: all if it has fallen silent, otherwise the upper
-// half, which it would send last.
+// Returns the rows requested only from this server that another should render: all if it has fallen silent, otherwise
+// the upper half, which it would send last.
 Run rows_to_spare(const Client& client, const RemoteServer& server) {
   Run run = longest_run(client, server.frame.row_begin, server.frame.row_end, 1);
   double silent = static_cast<double>(client_now_ns(client) - std::max(server.frame.asked_ns, server.frame.heard_ns));

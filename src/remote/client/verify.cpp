@@ -25,7 +25,7 @@ void write_pixel_text(const std::uint8_t* pixel, WireFormat format, char text[8]
     std::snprintf(text, 8, "%02x%02x%02x", pixel[0], pixel[1], pixel[2]);
 }
 
-// Describes a wrong pixel for the log: where, what was sent and what is right.
+// Describes a wrong pixel for the log: position, value sent and correct value.
 void write_proof(const Client& client, std::uint32_t row, std::uint32_t column, const std::uint8_t* sent,
                  const std::uint8_t* right, char text[160]) {
   char was[8], is[8];
@@ -35,7 +35,7 @@ void write_proof(const Client& client, std::uint32_t row, std::uint32_t column, 
                 is);
 }
 
-// Pixels to check in this frame for `sender_count` servers. A frame with a wrong pixel is checked again.
+// Number of pixels to check in this frame for `sender_count` servers. A frame with a wrong pixel is checked again.
 std::uint32_t due_count(Client* client, std::uint32_t sender_count) {
   Verifier* v = &client->verifier;
   if (v->check_count > 0) return std::max(static_cast<std::uint32_t>(v->check_count), sender_count);
@@ -45,7 +45,7 @@ std::uint32_t due_count(Client* client, std::uint32_t sender_count) {
   if (is_known(v->check_ns)) pixel_ns = static_cast<double>(v->check_ns.value);
   pixel_ns += preparing_left_ns(*client);
   double frame_ns = static_cast<double>(client_now_ns(*client) - client->begin_ns);
-  // Without a known pixel cost, because the device renders none, one pixel measures it.
+  // If the pixel cost is unknown because the device renders none, one pixel measures it.
   double paid = pixel_ns > 0 ? kCheckShare * frame_ns / pixel_ns : 1;
   return v->due_count = due_checks(&v->schedule, paid, &v->random);
 }
@@ -102,7 +102,7 @@ void render_pixels(Renderer* renderer, Client* client, std::uint32_t count) {
   trace_frame(renderer, source);
 }
 
-// Index of the first wrong pixel in [begin, end), or `end`.
+// Returns the index of the first wrong pixel in [begin, end), or `end`.
 std::uint32_t find_wrong(const Client& client, std::uint32_t begin, std::uint32_t end) {
   const Verifier& v = client.verifier;
   CHECK(begin <= end && end <= client.verifier.spans.count);
@@ -149,7 +149,7 @@ void share_missing_rows(Client* client) {
   }
 }
 
-// True if no wrong pixel was found.
+// Returns true if no wrong pixel was found.
 bool check_pixels(Renderer* renderer, Client* client) {
   Verifier* v = &client->verifier;
   std::uint32_t pixels[kServerCountMax] = {}, counts[kServerCountMax] = {}, ends[kServerCountMax] = {}, senders = 0;

@@ -1,4 +1,4 @@
-// Checks without the scene: the device cannot render, but can ask another server for the same row.
+// Checks without the scene: the device cannot render, but can request a row from another server.
 #include <algorithm>
 #include <cstdio>
 #include <cstring>
@@ -9,9 +9,9 @@
 namespace pocketray {
 namespace {
 
-// The device stops waiting for an answer after kLateAnswers times the usual time, but not before kAnswerNsMin.
-// Chosen: answers within one display frame or two are never late, however fast the usual ones; and four times is twice
-// what smooth.cpp takes for an outlier.
+// The device stops waiting for an answer after kLateAnswers times the usual time, but not before kAnswerNsMin. Chosen:
+// answers within one or two display frames are never late, however fast the usual ones; and four times is twice what
+// smooth.cpp treats as an outlier.
 constexpr double kLateAnswers = 4;
 constexpr double kAnswerNsMin = 50e6;
 
@@ -113,7 +113,7 @@ bool is_due(Client* client) {
   return due_checks(&v->schedule, kCheckShare * frame_ns / static_cast<double>(v->check_ns.value), &v->random) > 0;
 }
 
-// Asks a server outside the dispute; false if there is none.
+// Asks a server outside the dispute; returns false if there is none.
 bool ask_judge(Client* client) {
   Dispute* d = &client->verifier.dispute;
   std::uint32_t order[kServerCountMax], count = ready_servers(client, order);
@@ -142,12 +142,12 @@ void tell_dispute(Client* client) {
   v->disputed = true;
 }
 
-// Two servers' versions of a row. Both may be a tolerance away from what is right.
+// Compares two servers' versions of a row. Both may be off by a tolerance.
 bool rows_agree(const Client& client, const std::uint8_t* a, const std::uint8_t* b) {
   return pixels_close(client.options.format, a, b, client.settings.width, 2 * pixel_tolerance(client));
 }
 
-// Drops the one that differs from the judge, if exactly one does.
+// Drops the server that differs from the judge, if exactly one does.
 void judge(Client* client) {
   Verifier* v = &client->verifier;
   Dispute* d = &v->dispute;

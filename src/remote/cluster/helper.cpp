@@ -46,16 +46,16 @@ Status ClusterHelper::work(const TeamMessage& message) {
   if (message.bytes[0] == kScene) return take_scene(&reader);
   if (message.bytes[0] == kPrepare) return prepare(&reader);
   if (message.bytes[0] == kTrace) return trace(&reader);
-  return failure("rank 0 sent a message of an unknown kind: its program is another one");
+  return failure("rank 0 sent a message of an unknown kind: its program differs");
 }
 
-// Asks for the next part, or tells that it has all scenes.
+// Requests the next part, or reports that it has all scenes.
 Status ClusterHelper::take_scene(TeamReader* reader) {
   ClusterScene scene;
-  if (!read_plain(reader, &scene)) return failure("rank 0 sent a part of a message: its program is another one");
+  if (!read_plain(reader, &scene)) return failure("rank 0 sent a truncated message: its program differs");
   const std::size_t begin = scene_bytes_.size(), count = reader->left();
   if (scene.part.offset != begin || begin >= scene.byte_count || count > scene.byte_count - begin)
-    return failure("rank 0 sent another part of a scene than was asked for: its program is another one");
+    return failure("rank 0 sent the wrong part of a scene: its program differs");
   scene_bytes_.resize(begin + count);
   CHECK(reader->take(scene_bytes_.data() + begin, count));
   if (scene_bytes_.size() < scene.byte_count) return want({scene.part.scene, scene_bytes_.size()}), success();
@@ -103,7 +103,7 @@ Status ClusterHelper::prepare_job(Session* session, const ClusterPrepare& asked)
     Slice slice;
     WireError code;
     RETURN_IF_ERROR(step_job(session, tools, kSliceNs, &slice, &code));
-    session->own_exposure = asked.own_exposure;  // rank 0 has measured it
+    session->own_exposure = asked.own_exposure;  // measured by rank 0
     if (session->job.stage == JobStage::own_exposure) session->job.stage = JobStage::aim;
   }
   return success();
@@ -112,7 +112,7 @@ Status ClusterHelper::prepare_job(Session* session, const ClusterPrepare& asked)
 Status ClusterHelper::prepare(TeamReader* reader) {
   ClusterPrepare asked;
   Session* session;
-  if (!read_plain(reader, &asked)) return failure("rank 0 sent a part of a message: its program is another one");
+  if (!read_plain(reader, &asked)) return failure("rank 0 sent a truncated message: its program differs");
   RETURN_IF_ERROR(session_of(asked.job, &session));
   seal_memory();
   Status status = prepare_job(session, asked);
@@ -128,7 +128,7 @@ Status ClusterHelper::prepare(TeamReader* reader) {
 Status ClusterHelper::trace(TeamReader* reader) {
   ClusterTraced traced = {};
   Session* session;
-  if (!read_plain(reader, &traced.asked)) return failure("rank 0 sent a part of a message: its program is another one");
+  if (!read_plain(reader, &traced.asked)) return failure("rank 0 sent a truncated message: its program differs");
   RETURN_IF_ERROR(session_of(traced.asked.job, &session));
   const RowPiece& piece = traced.asked.piece;
   const bool is_part = piece.row_begin < piece.row_end && piece.row_end <= session->shape.height &&

@@ -1,5 +1,5 @@
-// A helper of a server on several ranks: traces the rows that rank 0 gives it. It has the same scenes and as much
-// memory for each client, and plans it likewise.
+// A helper of a server on several ranks: traces the rows assigned by rank 0. It has the same scenes and as much memory
+// for each client, and plans it likewise.
 #pragma once
 #include <string>
 
@@ -11,15 +11,15 @@ namespace pocketray {
 
 class ClusterHelper {
  public:
-  // scene_bytes_max: for all scenes. Uses of the options what concerns memory and tracing.
+  // scene_bytes_max: total for all scenes. Uses only the options about memory and tracing.
   ClusterHelper(const Team& team, const ServerOptions& options, std::uint64_t scene_bytes_max, std::string identity);
   ~ClusterHelper();
   ClusterHelper(const ClusterHelper&) = delete;
   ClusterHelper& operator=(const ClusterHelper&) = delete;
 
-  // Takes its memory and asks for the scenes.
+  // Allocates its memory and requests the scenes.
   Status open();
-  // Does what a message of rank 0 asks for.
+  // Handles a message of rank 0.
   Status work(const TeamMessage& message);
 
  private:
@@ -35,7 +35,7 @@ class ClusterHelper {
   std::uint64_t scene_bytes_max_;
   std::string identity_;
   SceneStore store_;
-  std::vector<std::uint8_t> scene_bytes_;  // of the scene that comes
+  std::vector<std::uint8_t> scene_bytes_;  // of the arriving scene
   std::vector<void*> blocks_;
   std::vector<Session> sessions_;
   std::vector<std::uint32_t> row_pixels_;

@@ -1,4 +1,4 @@
-// Scenes and answers; lead_rows.cpp gives out rows.
+// Scenes and answers; lead_rows.cpp assigns rows.
 #include "remote/cluster/lead.h"
 
 #include <algorithm>
@@ -15,7 +15,7 @@ namespace pocketray {
 namespace {
 
 constexpr double kWaitSeconds = 0.05;
-// Of a scene, sent at once. Chosen: 64 helpers that start together make rank 0 hold 64 MiB for a moment.
+// Bytes of a scene sent at once. Chosen: 64 helpers that start together make rank 0 hold 64 MiB for a moment.
 constexpr std::uint64_t kSceneBytes = 1 << 20;
 // Chosen: pieces take milliseconds.
 constexpr std::uint64_t kPatienceNs = 2'000'000'000;
@@ -75,7 +75,7 @@ Status ClusterLead::welcome(const SceneStore& store) {
     if (message.bytes[0] == kWantScene) {
       ClusterWant want;
       if (!read_plain(&reader, &want) || !has_part(store, want))
-        return failure("rank %u: its program is not that of rank 0", message.from);
+        return failure("rank %u: its program differs from rank 0's", message.from);
       send_scene(team_, message.from, store, want);
       continue;
     }
@@ -83,7 +83,7 @@ Status ClusterLead::welcome(const SceneStore& store) {
     rank->threads = static_cast<std::uint32_t>(reader.number());
     const bool is_first = message.bytes[0] == kReady && !rank->is_ready;
     if (!is_first || !reader.ok() || identity != identity_ || rank->threads == 0)
-      return failure("rank %u: its program or options are not those of rank 0: start all ranks with the same command",
+      return failure("rank %u: its program or options differ from rank 0's: start all ranks with the same command",
                      message.from);
     rank->is_ready = true;
     ++ready_count;
@@ -127,9 +127,9 @@ void ClusterLead::take_back(std::uint32_t rank) {
     if (slot.is_begun) take_back_rows(&slot.share, static_cast<std::uint16_t>(rank));
 }
 
-// Takes one answer; false if none came in time.
+// Takes one answer; returns false if none came in time.
 bool ClusterLead::take_answer(double seconds) {
-  SealPause pause;  // a message comes on the heap
+  SealPause pause;  // a message is received on the heap
   TeamMessage message;
   bool there;
   Status status = receive_from_helpers(team_, seconds, &message, &there);
@@ -139,7 +139,7 @@ bool ClusterLead::take_answer(double seconds) {
   if (rank->is_lost) return true;
   rank->heard_ns = clock_ns();
   if (!answer_fits(message.from, message)) {
-    tell(message.from, "answered what it was not asked: it gets no more rows, and the others trace those it had");
+    tell(message.from, "sent an unrequested answer: it gets no more rows, and the others trace its rows");
     rank->is_lost = true;
     take_back(message.from);
   }
@@ -147,7 +147,7 @@ bool ClusterLead::take_answer(double seconds) {
   return true;
 }
 
-// False if it is not the answer to what the rank was asked first.
+// Returns false unless it answers the rank's oldest question.
 bool ClusterLead::answer_fits(std::uint32_t from, const TeamMessage& message) {
   Rank* rank = &ranks_[from];
   if (rank->asked_count == 0) return false;

@@ -1,5 +1,5 @@
-// Rank 0 of a server on several ranks. It alone talks to clients; all ranks trace the rows of each request. A helper
-// has at most two pieces at a time, so that it has work while its last rows are on their way.
+// Rank 0 of a server on several ranks. Only it talks to clients; all ranks trace the rows of each request. A helper has
+// at most two pieces at a time, so that it has work while its last rows are on their way.
 #pragma once
 #include <string>
 
@@ -9,13 +9,13 @@
 
 namespace pocketray {
 
-// Frames with less work than that are rank 0's alone. Chosen: four times what sharing one costs, about half a
+// Frames with less work than this are traced by rank 0 alone. Chosen: four times the cost of sharing one, about half a
 // millisecond of messages and waits.
 constexpr std::uint64_t kSharedNsMin = 2'000'000;
 
 class ClusterLead {
  public:
-  // Takes all memory that does not depend on scenes. `identity` must be that of the helpers.
+  // Allocates all memory that does not depend on scenes. `identity` must equal that of the helpers.
   ClusterLead(const Team& team, const ServerOptions& options, std::string identity,
               std::uint64_t shared_ns_min = kSharedNsMin);
   ClusterLead(const ClusterLead&) = delete;
@@ -23,26 +23,26 @@ class ClusterLead {
 
   // For ServerOptions.
   const HelperRanks* helpers() const { return &helpers_table_; }
-  // Sends the helpers all scenes. Returns once all can trace, or at an interrupt; fails if one cannot.
+  // Sends all scenes to the helpers. Returns once all can trace, or at an interrupt; fails if one cannot.
   Status welcome(const SceneStore& store);
-  // To be called between steps of the server. Fails if a helper has failed; notices their interrupts.
+  // Call between steps of the server. Fails if a helper has failed; notices their interrupts.
   Status tend();
 
   std::uint32_t rank_count() const { return team_.size; }
   std::uint32_t thread_count() const;  // of all ranks, after welcome()
-  double helped_share() const;         // part of the pixels traced so far that helpers traced
+  double helped_share() const;         // fraction of the pixels traced so far that helpers traced
 
  private:
   static constexpr std::uint32_t kAskedMax = 3, kPiecesMax = 2;
   enum class Preparation : std::uint8_t { none, asked, done, refused };
   struct Asked {
     ClusterTrace work;
-    bool is_piece, is_abandoned;  // abandoned: others do it
+    bool is_piece, is_abandoned;  // abandoned: others trace it
   };
   struct Rank {
     std::uint32_t threads = 1;
     bool is_ready = false, is_lost = false, is_silent = false;
-    Asked asked[kAskedMax];  // in order
+    Asked asked[kAskedMax];  // oldest first
     std::uint32_t asked_count = 0, piece_count = 0;
     std::uint64_t heard_ns = 0;  // or when it was asked after having nothing to do
     double pixel_ns = 0;         // recent; 0: unknown

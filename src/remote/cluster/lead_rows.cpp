@@ -13,7 +13,7 @@ namespace {
 constexpr std::uint32_t kFirstPixels = 8;
 // A helper has two pieces: together they last a slice at most.
 constexpr std::uint64_t kPieceNs = kSliceNs / 2;
-// Pixels below which the time of a piece is mostly its overhead. Chosen: a row of a small screen.
+// Pixels below which overhead dominates the time of a piece. Chosen: a row of a small screen.
 constexpr std::uint32_t kTimedPixels = 64;
 
 }  // namespace
@@ -36,7 +36,7 @@ void ClusterLead::ask(std::uint32_t index, const ClusterTrace& work, bool is_pie
 
 void ClusterLead::prepare(Slot* slot, std::uint32_t rank) {
   CHECK(slot->preparations[rank] == Preparation::none);
-  SealPause pause;  // a message leaves by the heap
+  SealPause pause;  // a message is sent from the heap
   const Session& session = *slot->session;
   ClusterPrepare message = {};
   message.job.number = slot->job_number;
@@ -48,8 +48,8 @@ void ClusterLead::prepare(Slot* slot, std::uint32_t rank) {
   slot->preparations[rank] = Preparation::asked;
 }
 
-// Judges by the last frame if it was complete. The first one after a change costs more, since ranks then trace rows
-// whole that others had.
+// Judges by the last frame if it was complete. The first one after a change costs more, since ranks then trace whole
+// rows that others had.
 bool ClusterLead::is_worth_sharing(const Slot& slot) const {
   const RowShare& share = slot.share;
   if (!slot.is_begun || share.front < share.count || slot.is_shared != slot.was_shared) return slot.is_shared;
@@ -69,7 +69,7 @@ void ClusterLead::begin(Session* session) {
   slot->pixels_done = slot->pixels_traced = 0;
   std::fill(slot->preparations.begin(), slot->preparations.end(), Preparation::none);
   session->job.row_pixels = slot->share.row_pixels.data();
-  // No more helpers than rows besides the first.
+  // At most one helper per row besides the first.
   const std::uint32_t rows = session->job.request.row_end - session->job.request.row_begin;
   for (std::uint32_t rank = 1; rank < team_.size; ++rank) {
     const bool helps = is_shared && rank < rows;
@@ -109,13 +109,13 @@ bool ClusterLead::give_piece(Slot* slot, std::uint32_t rank) {
   work.job.session = static_cast<std::uint32_t>(slot - slots_.data());
   const PieceLimits limits = limits_of(*slot, rank, window_of(*slot));
   if (!take_piece(&slot->share, static_cast<std::uint16_t>(rank), limits, &work.piece)) return false;
-  SealPause pause;  // a message leaves by the heap
+  SealPause pause;  // a message is sent from the heap
   ask(rank, work, true);
   send_plain(team_, rank, kTrace, work);
   return true;
 }
 
-// First a piece to those that have none.
+// Serves ranks without a piece first.
 void ClusterLead::give(Slot* slot) {
   for (std::uint32_t pieces = 0; pieces < kPiecesMax; ++pieces)
     for (std::uint32_t rank = 1; rank < team_.size; ++rank) {
@@ -165,7 +165,7 @@ Slice ClusterLead::trace(Session* session, std::uint64_t slice_ns) {
   }
   const std::uint32_t rest = next_chunk_rows(job.request, job.sent) - (job.rows_traced - job.rows_sent);
   const std::uint64_t start = clock_ns();
-  // Rows that others had in the last frame, and that would have to be traced whole, are left to them for so long.
+  // Rows that others had in the last frame, and that would have to be traced whole, are reserved for them this long.
   const double whole_ns = session->trace_ns * share->width / ranks_[0].threads;
   const bool leaves_rows = slot->keeps_rows && slot->is_shared;
   for (bool any = !leaves_rows;; any = !leaves_rows) {

@@ -1,4 +1,4 @@
-// What rank 0 of a server and its helpers send each other.
+// Messages between rank 0 of a server and its helpers.
 #pragma once
 #include <type_traits>
 
@@ -43,14 +43,14 @@ struct ClusterTrace {
   ClusterJob job;
   RowPiece piece;
 };
-// If the rows are complete, the pixels traced of each row and the packed rows follow.
+// If the rows are complete, the number of pixels traced of each row and the packed rows follow.
 struct ClusterTraced {
   ClusterTrace asked;
   std::uint64_t took_ns;
   std::uint32_t pixels_traced, padding;
 };
 
-// Sent as they are in memory: ranks run the same program on CPUs of one kind.
+// Sent as in memory: ranks run the same program on CPUs of one kind.
 template <class T>
 void write_plain(const T& value, TeamWriter* writer) {
   static_assert(std::is_trivially_copyable<T>::value, "it is sent as bytes");

@@ -14,7 +14,7 @@ struct PieceSource {
   std::uint32_t traced = 0;
 };
 
-// As many rows at once as can be listed, from the lowest up.
+// Takes as many rows at once as can be listed, from the lowest up.
 void next_rows(void* context, SpanBatch* batch) {
   PieceSource* source = static_cast<PieceSource*>(context);
   RowPiece* left = &source->piece;

@@ -1,4 +1,4 @@
-// Traces and packs the pieces of a request that a rank was given.
+// Traces and packs the pieces of a request assigned to a rank.
 #pragma once
 #include "remote/cluster/row_share.h"
 #include "remote/server/session.h"
@@ -6,8 +6,8 @@
 namespace pocketray {
 
 // Traces a piece of the session's job, at stage `rows`; pieces of one row come from left to right. Returns how many of
-// its pixels had to be traced. Once the rows are complete, keeps them for the next frame, writes to row_pixels how many
-// pixels of each had to be traced, and packs them in the session's picture.
+// its pixels had to be traced. Once the rows are complete, keeps them for the next frame, writes the number of pixels
+// traced per row to row_pixels, and packs them in the session's picture.
 std::uint32_t trace_piece(Session* session, const RowPiece& piece, std::uint32_t* row_pixels);
 
 inline std::uint32_t line_bytes(const Session& session) {

@@ -15,8 +15,8 @@ std::uint32_t window_end(const RowShare& share, std::uint32_t window) {
   return share.front + std::min(window, share.count - share.front);
 }
 
-// A row of the window that the rank has in part, else a free one that it had in the last frame, else one that nobody
-// had, else any; the window's end if there is none.
+// Finds a row of the window that the rank has in part, else a free one that it had in the last frame, else one that
+// nobody had, else any; returns the window's end if there is none.
 std::uint32_t find_row(const RowShare& share, std::uint16_t rank, const PieceLimits& limits) {
   const std::uint32_t end = window_end(share, limits.window);
   std::uint32_t own = end, unowned = end, any = end;

@@ -10,23 +10,23 @@ namespace {
 
 using platform::LinkResult;
 
-// Chosen: a few round trips of a slow link; a pause that logs no flood.
+// Chosen: a few round trips of a slow link; a pause that keeps floods from filling the log.
 constexpr std::uint64_t kLingerNs = 2'000'000'000;  // for a leaving peer to read the reason
 constexpr std::uint64_t kAcceptRestNs =
-    1'000'000'000;  // pause after a failed accept, since what was short will not be free at once
-// After guests were tended, they rest for this many times what that took, but at most a slice, while sessions have
+    1'000'000'000;  // pause after a failed accept, since the scarce resource will not be free at once
+// After guests were tended, they rest for this many times the time taken, but at most a slice, while sessions have
 // work. Chosen: a flood of connections takes about an eighth of the time.
 constexpr std::uint64_t kGuestRestFactor = 7;
 
 void queue(Guest* guest, const Message& message) { CHECK(send_message(&guest->messages, message)); }
 
-// Sends as much as there is room for; false if the connection is lost.
+// Sends as much as there is room for; returns false if the connection is lost.
 bool flush(Guest* guest) {
   platform::Error error;
   return flush_message_stream(&guest->messages, &error);
 }
 
-// Of one address at a time: however many it sends, and however long their handshakes take, others find room.
+// Most guests of one address: however many it sends and however long their handshakes take, others find room.
 int guests_max(const Server& server) { return std::max(1, server.options.guest_count_max / 2); }
 
 void send_away(Server* server, Guest* guest, WireError code) {
@@ -45,8 +45,8 @@ int guests_of(const Server& server, std::uint64_t key) {
                                         [&](const Guest& g) { return is_open(g) && g.key == key; }));
 }
 
-// A free slot for a guest of that address, else that of the longest-waiting guest among those leaving or, failing that,
-// of the address with most guests; of its own address if that has its share.
+// Returns a free slot for a guest of that address, else that of the longest-waiting guest among those leaving or,
+// failing that, of the address with most guests; of its own address if that has its share.
 Guest* free_guest(Server* server, std::uint64_t key) {
   const bool own = guests_of(*server, key) >= guests_max(*server);
   Guest* chosen = nullptr;
@@ -60,7 +60,7 @@ Guest* free_guest(Server* server, std::uint64_t key) {
     if (count < most || (count == most && left >= least)) continue;
     chosen = &guest, most = count, least = left;
   }
-  CHECK(chosen != nullptr);  // there is room for one at least
+  CHECK(chosen != nullptr);  // there is room for at least one
   close_guest(chosen);
   return chosen;
 }
@@ -79,8 +79,8 @@ void receive_guest(Server* server, int stream) {
   if (!flush(guest)) close_guest(guest);
 }
 
-// The least recently seen address without sessions, preferably one that has not been sent light frames: whoever keeps
-// coming from new addresses makes the server forget only those.
+// Returns the least recently seen address without sessions, preferably one that has not been sent light frames: clients
+// that keep coming from new addresses make the server forget only those.
 int forgotten_address(const Server& server) {
   const std::vector<Address>& all = server.addresses;
   int oldest = -1;
@@ -175,7 +175,7 @@ void read_hello(Server* server, Guest* guest) {
   DecodeState state = take_message(&guest->messages, &message);
   if (state == DecodeState::message && message.type == MessageType::hello) {
     if (message.hello.version == kWireVersion) return seat(server, guest, message.hello);
-    log_guest(server, *guest, "it speaks another protocol version");
+    log_guest(server, *guest, "it speaks a different protocol version");
     return send_away(server, guest, WireError::wrong_version);
   }
   if (state != DecodeState::need_more) {
@@ -204,7 +204,7 @@ bool discard_input(MessageStream* messages) {
 
 namespace {
 
-// Reads a guest's input: with a hello it gets a place or is told there is none.
+// Reads a guest's input: with a hello, it gets a place or is told that there is none.
 void tend_guest(Server* server, Guest* guest) {
   CHECK(is_open(*guest));
   platform::Error error;
@@ -225,7 +225,7 @@ void tend_guest(Server* server, Guest* guest) {
 // Accepts the connections waiting at the listener.
 void accept_clients(Server* server) {
   server->accept_rests = false;
-  // More of one address would only displace each other.
+  // More connections from one address would only displace each other.
   for (int i = 0; i < guests_max(*server); ++i) {
     int stream = -1;
     platform::Error error;

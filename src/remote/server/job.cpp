@@ -1,4 +1,4 @@
-// Takes a job from request to pixels, one slice of CPU time at a time.
+// Advances a job from request to pixels, one slice of CPU time at a time.
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -12,20 +12,20 @@
 namespace pocketray {
 namespace {
 
-// Chosen: all of a 320×240 picture, a 32nd of the largest that a server takes by default. With more, searching a large
+// Chosen: all of a 320×240 picture, 1/32 of the largest that a server accepts by default. With more, searching a large
 // picture would delay other clients.
 constexpr std::uint32_t kSearchPixels = 1u << 17;  // searched at once
 // First pixels of an exposure, while their cost is unknown; as in session.cpp.
 constexpr std::uint32_t kFirstPixels = 8;
-// A chunk is packed and coded at once. Derived: at the 100 to 200 ns per pixel of a small server that takes 3 to 7 ms,
+// A chunk is packed and coded at once. Derived: at the 100 to 200 ns per pixel of a small server, this takes 3 to 7 ms,
 // less than a slice.
 constexpr std::uint32_t kServerChunkPixels = 1u << 15;
 
-// Memory that a step touches for the first time: the system then provides and clears it. Chosen: at the 0.5 to 2.5 ms
+// Memory that a step may touch for the first time: the system then provides and clears it. Chosen: at the 0.5 to 2.5 ms
 // per MiB of small and virtual machines, less than a slice.
 constexpr std::size_t kTouchBytes = 2u << 20;
 
-// Touches the block up to `end`, as far as a step may; false if more is left.
+// Touches the block up to `end`, as far as a step may; returns false if more is left.
 bool touch(Session* session, std::size_t end) {
   CHECK_LE(end, session->block.capacity);
   std::size_t* begin = &session->touched_bytes;
@@ -147,7 +147,7 @@ Status plan(Session* session, const JobTools& tools, WireError* code) {
   end_shared_rows(&session->renderer);  // while it has the last frame's geometry
   session->job.stage = after_build(*session);
   if (session->own_exposure > 0) return success();
-  // Its measurement was abandoned for another request: restarts it.
+  // Its measurement was abandoned for another request: restart it.
   session->renderer.camera = session->own_camera;
   session->renderer.camera_overridden = false;
   session->renderer.animation = 0;

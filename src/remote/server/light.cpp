@@ -1,4 +1,4 @@
-// Indirect light of a frame's pixels for a device that renders the rest of the frame itself.
+// Renders the indirect light of a frame's pixels for a device that renders the rest of the frame itself.
 #include <algorithm>
 
 #include "base/check.h"
@@ -13,7 +13,7 @@ namespace {
 constexpr std::uint32_t kFirstPixels = 8;
 // Chosen: spans short enough to keep all threads busy, and at most this many at once.
 constexpr std::uint32_t kSpanLights = 8, kSpansMax = 512;
-// Light that changes no level of the display by itself, over the radiance of white: a twentieth of the darkest level.
+// Light relative to the radiance of white that changes no display level by itself: 1/20 of the darkest level.
 constexpr float kFaintest = 0x1p-16f;
 
 std::uint32_t columns_of(const FrameRequest& q) { return light_map_side(q.settings.width, q.light_pitch); }
@@ -90,7 +90,7 @@ void send_light(Session* session) {
   const FrameRequest& request = job->request;
   const std::uint32_t columns = columns_of(request), rows = rows_of(request);
   Renderer* renderer = &session->renderer;
-  // The lights lie where their pixels are; none of them moves to the place of a later one.
+  // The lights lie at their pixels; none of them moves to the place of a later one.
   Vec3* light = renderer->image.data;
   for (std::uint32_t i = 0; i < columns * rows; ++i)
     light[i] = renderer->image[std::size_t(i / columns * request.light_pitch) * renderer->settings.width +

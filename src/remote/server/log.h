@@ -6,8 +6,8 @@
 
 namespace pocketray {
 
-// Chosen: eight clients and sixteen guests, the defaults, can come or go at once without a line being left out. At a
-// line a second, of 640 bytes at most, the log then grows by at most 55 MB a day.
+// Chosen: eight clients and sixteen guests, the defaults, can come or go at once without losing a line. At one line per
+// second, of at most 640 bytes, the log then grows by at most 55 MB a day.
 constexpr int kLogBurst = 40;                            // lines in a burst
 constexpr std::uint64_t kLogIntervalNs = 1'000'000'000;  // then one line per interval
 

@@ -8,8 +8,8 @@
 namespace pocketray {
 namespace {
 
-// From one client before the others get their turn. Chosen: a tenth of a slice of rendering. The count is the limit
-// where the link's clock stands still meanwhile, as in simulations.
+// Messages taken from one client before the others get their turn. Chosen: a tenth of a slice of rendering. The count
+// is the limit where the link's clock stands still meanwhile, as in simulations.
 constexpr int kMessagesAtOnce = 32;
 constexpr std::uint64_t kMessagesNs = 2'000'000;
 
@@ -125,7 +125,7 @@ void take_view_query(Server* server, Session* session, const ViewQuery& query) {
   request->camera = query.camera, request->settings = query.settings;
 }
 
-// False if the session has ended.
+// Returns false if the session has ended.
 bool take_message(Server* server, Session* session, const Message& message) {
   constexpr WireError kMalformed = WireError::malformed;
   const SceneStore& store = *server->store;
@@ -221,7 +221,7 @@ void read_session(Server* server, Session* session) {
   platform::Error error;
   if (!read_message_stream(messages, &error)) return end_session(server, session, error.text);
   session->more_to_take |= !leaving && messages->bytes_in > before;
-  // Its earlier messages still count.
+  // Its earlier messages are still handled.
   if (messages->ended && (leaving || !session->more_to_take)) end_session(server, session, "it closed the connection");
 }
 

@@ -1,5 +1,5 @@
-// Who gets a place. If all are taken, an address with more places than the newcomer's gives one up, and whoever
-// misbehaves makes way for who does not.
+// Assigns places. If all are taken, an address with more places than the newcomer's gives one up, and misbehaving
+// clients make way for others.
 #include <algorithm>
 
 #include "base/check.h"
@@ -8,20 +8,20 @@
 namespace pocketray {
 namespace {
 
-// Of silence, after which a client makes way for another. Chosen: longer than a person pauses between two frames.
+// Silence after which a client makes way for another. Chosen: longer than a person pauses between two frames.
 constexpr std::uint64_t kMakeWayNs = 10'000'000'000;
 // Derived: a device gives up a server that sends no rows for 3 s (client.h).
-constexpr std::uint64_t kUnprovenNs = 3'000'000'000;  // to be sent a light frame
+constexpr std::uint64_t kUnprovenNs = 3'000'000'000;  // time to be sent a light frame
 
 struct Newcomer {
-  int address, place_count;  // of its address
-  bool behaves;              // its address does
-  bool is_known;             // its address, which has no place, has been sent light frames
+  int address, place_count;  // place_count: of its address
+  bool behaves;              // its address behaves
+  bool is_known;             // its address has no place, but has been sent light frames
   bool is_new;               // its address has never had a place
   bool yields_to_proven;     // its address has sessions that have not been sent light frames
 };
 
-// Who leaves first comes last.
+// In order of leaving, the first to leave last.
 enum class Standing : std::uint8_t { behaves, misbehaves_though_proven, address_misbehaves, misbehaves };
 
 struct Candidate {
@@ -77,10 +77,10 @@ Candidate candidate_of(Server* server, Session* session) {
   return c;
 }
 
-// Of an address with at least two more places anyone may have to leave, an idle client of one with more places, too.
-// Within an address, those that have behaved keep their places from newcomers while others have not been sent a light
-// frame. Of other addresses, who misbehaves may have to, and who has not been sent a light frame for a while, or at
-// once for an address that was.
+// Any client of an address with at least two more places may have to leave, and an idle client of one with more places.
+// Within an address, clients that have behaved keep their places from newcomers while others have not been sent a light
+// frame. At other addresses, misbehaving clients may have to leave, and clients that have not been sent a light frame
+// for a while (at once if the newcomer's address has).
 bool may_go(const Candidate& c, const Newcomer& n) {
   if (c.session->address == n.address) {
     const bool misbehaves = c.standing == Standing::misbehaves || c.standing == Standing::misbehaves_though_proven;
@@ -91,8 +91,8 @@ bool may_go(const Candidate& c, const Newcomer& n) {
   return (n.behaves && c.standing != Standing::behaves) || (n.is_new && c.is_in_vain);
 }
 
-// The worst first; of these, of the address with most places; then who has not been sent light frames, was silent the
-// longest or came last.
+// The worst standing leaves first; then the address with most places; then the client that has not been sent light
+// frames, was silent the longest or came last.
 bool leaves_before(const Candidate& a, const Candidate& b) {
   if (a.standing != b.standing) return a.standing > b.standing;
   if (a.offence_ns != b.offence_ns) return a.offence_ns > b.offence_ns;
@@ -102,13 +102,13 @@ bool leaves_before(const Candidate& a, const Candidate& b) {
   return a.session->account.seat > b.session->account.seat;
 }
 
-// The session that must leave for one of `address`; null if none.
+// Returns the session that must leave for one of `address`; null if none.
 Session* find_leaver(Server* server, int address) {
   const Newcomer newcomer = newcomer_of(*server, address);
   Candidate chosen;
   for (Session& session : server->sessions) {
     if (session.phase == SessionPhase::unused) continue;
-    if (session.messages.ended) return &session;  // what it has sent would be answered to nobody
+    if (session.messages.ended) return &session;  // nobody would receive the answers to what it has sent
     const Candidate c = candidate_of(server, &session);
     if (may_go(c, newcomer) && (!chosen.session || leaves_before(c, chosen))) chosen = c;
   }

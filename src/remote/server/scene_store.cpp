@@ -15,7 +15,7 @@
 namespace pocketray {
 namespace {
 
-// True if the file name is that of a scene; other files are textures and the like.
+// True for the name of a scene file; other files are textures and the like.
 bool is_scene_file(const std::string& name) {
   if (has_suffix(name.c_str(), ".pray")) return true;
 #ifdef POCKETRAY_HAVE_IMPORT
@@ -45,7 +45,7 @@ Status too_many_bytes(std::uint64_t bytes_max) {
   return failure("it does not fit in the %.0f MiB for all scenes", static_cast<double>(bytes_max) / (1 << 20));
 }
 
-// Reads or makes the baked bytes.
+// Reads or creates the baked bytes.
 Status read_bytes(const std::string& path, std::uint64_t bytes_left, StoredScene* stored) {
   if (is_baked_name(path)) {
     // A copy: writing to or truncating the file while it is served does not affect clients or threads.
@@ -87,7 +87,7 @@ Status open_stored(std::uint64_t bytes_left, StoredScene* stored) {
   return success();
 }
 
-// Truncated at a UTF-8 character. Clients print it, so control characters are removed.
+// Truncates at a UTF-8 character. Clients print it, so control characters are removed.
 void set_name(const std::string& name, StoredScene* stored) {
   std::size_t length = std::min(name.size(), std::size_t(kNameBytes - 1));
   while (length > 0 && length < name.size() && (name[length] & 0xC0) == 0x80) --length;
@@ -96,7 +96,7 @@ void set_name(const std::string& name, StoredScene* stored) {
   make_printable(stored->name, length);
 }
 
-// Adds an opened scene, or gives its memory back.
+// Adds an opened scene, or frees its memory.
 Status add_scene(const std::string& name, Status status, StoredScene* stored, SceneStore* store) {
   if (status.ok && store->scenes.size() == UINT16_MAX) status = failure("a server holds at most 65535 scenes");
   if (status.ok && !find_scene(*store, stored->hash)) {

@@ -16,7 +16,7 @@ struct StoredScene {
   const std::uint8_t* bytes = nullptr;  // the baked file, a copy
   std::size_t byte_count = 0;
   Scene scene;                  // a view of it, with our accelerator if it has none
-  std::size_t accel_bytes = 0;  // of our accelerator
+  std::size_t accel_bytes = 0;  // size of our accelerator
   void* baked_block = nullptr;
   void* accel_block = nullptr;
 };
@@ -43,14 +43,14 @@ Status open_scene_store(const SceneStoreOptions& options, SceneStore* store);
 // not add a scene twice.
 Status store_scene(const std::string& name, const std::string& path, std::uint64_t bytes_left, SceneStore* store);
 
-// The same for the bytes of a baked file, which are copied.
+// store_scene() for the bytes of a baked file, which are copied.
 Status store_baked_scene(const std::string& name, const std::uint8_t* bytes, std::size_t byte_count,
                          std::uint64_t bytes_left, SceneStore* store);
 
-// Of all scenes with their accelerators.
+// Total bytes of all scenes with their accelerators.
 std::uint64_t stored_bytes(const SceneStore& store);
 
-// Null if there is none.
+// Returns null if there is none.
 const StoredScene* find_scene(const SceneStore& store, const ContentHash& hash);
 
 }  // namespace pocketray

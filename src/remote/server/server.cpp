@@ -38,7 +38,7 @@ void read_and_account(Server* server, Session* session) {
     account_for(server, session, now - start, false);
 }
 
-// Sends queued output, and rows waiting for room unless they must also wait for their turn.
+// Sends queued output, and rows that wait for room unless they must also wait for their turn.
 void send_session(Server* server, Session* session) {
   for (;;) {
     std::uint64_t start = cpu_now_ns(server), queued_before = queued_bytes(session->messages);
@@ -52,7 +52,7 @@ void send_session(Server* server, Session* session) {
   }
 }
 
-// True while waiting for the rest of a message; for the client to read its output; for nothing.
+// True if the session waits for the rest of a message, for the client to read its output, or for nothing.
 bool awaits_message(const Session& session) {
   return session.phase == SessionPhase::serving && input_bytes(session.messages) > 0;
 }

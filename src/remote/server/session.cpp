@@ -8,7 +8,7 @@
 namespace pocketray {
 namespace {
 
-// Chosen: pixels of 0.65 ms (below) then take 5 ms, a quarter of a slice. More could overrun it before the first price
+// Chosen: pixels of 0.65 ms (below) then take 5 ms, a quarter of a slice. More could overrun it before the first cost
 // is known; fewer would mostly measure overhead.
 constexpr std::uint32_t kFirstPixels = 8;  // per thread, while the cost of pixels is unknown
 // Per light point and sample; measured: 512 points, 16 samples, 0.65 ms per pixel of cornell.
@@ -53,10 +53,10 @@ void send_chunk(Session* session, std::uint32_t row_begin, std::uint32_t row_end
   session->row_count += row_count;
 }
 
-// Rows of the next chunk to send; 0: all sent.
+// Number of rows in the next chunk to send; 0: all sent.
 std::uint32_t next_chunk_rows(const Session& session) { return next_chunk_rows(session.job.request, session.job.sent); }
 
-// Rows to trace until another chunk is complete.
+// Number of rows to trace until another chunk is complete.
 std::uint32_t rows_to_next_chunk(const FrameJob& job) {
   CHECK(has_rows(job.traced));
   std::uint32_t unsent = job.rows_traced - job.rows_sent, rows;
@@ -74,7 +74,7 @@ struct SliceSource {
 
 void code_beside(void* session) { send_chunks(static_cast<Session*>(session)); }
 
-// The next pixels of a row.
+// Adds the next pixels of a row.
 void next_part(SliceSource* source, std::uint32_t pixels_max, SpanBatch* batch) {
   const FrameJob& job = source->session->job;
   const Settings& settings = source->session->renderer.settings;
@@ -129,8 +129,8 @@ void next_slice(void* context, SpanBatch* batch) {
   source->slice = {rows, 0, rows * settings.width, traced, false, false};
 }
 
-// The part of a job's time that its client has had something of: that of sent rows, by the part of the rows asked for
-// that they are. A client that keeps asking for frames and gives them up after the first rows earns next to nothing.
+// Time of a job that benefits its client: the time of sent rows, weighted by their fraction of the requested rows. A
+// client that keeps requesting frames and abandons them after the first rows earns next to nothing.
 std::uint64_t useful_ns(const FrameJob& job) {
   const std::uint64_t took_ns = job.took_ns - job.build_ns, asked = job.request.row_end - job.request.row_begin;
   if (job.is_view_query) return 0;
@@ -257,7 +257,7 @@ void end_slice(Session* session, const Slice& slice, std::uint64_t took_ns) {
     session->probe_ns = dear_pixel_ns(session->probe_ns, static_cast<double>(took_ns + 1) / slice.pixel_count);
     return;
   }
-  if (slice.is_coarse) {  // single pixels take longer than those of rows, but tell what a slice can have
+  if (slice.is_coarse) {  // single pixels take longer than pixels of rows, but tell how many fit a slice
     if (session->trace_ns == 0) session->trace_ns = static_cast<double>(took_ns + 1) / slice.traced_count;
     return;
   }

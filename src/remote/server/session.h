@@ -12,26 +12,26 @@
 
 namespace pocketray {
 
-// Of any message from a device. Derived: twice the longest, a frame_request of 268 bytes (PROTOCOL.md), as settings may
-// be added.
+// Longest message from a device. Derived: twice the longest today, a frame_request of 268 bytes (PROTOCOL.md), since
+// settings may be added.
 constexpr std::uint32_t kRequestBytesMax = 512;
 constexpr std::size_t kInputBytes = 4096;  // limit on unread input from a client; chosen: eight of the longest messages
-// Of any message except row_chunk. Derived: a scene_piece has 32 bytes besides the piece, other answers 112 at most.
+// Longest reply except row_chunk. Derived: a scene_piece has 32 bytes besides the piece, other replies at most 112.
 constexpr std::size_t kReplyBytesMax = kPieceBytesMax + 128;
 // Renders more rows only while at most this much waits to be sent: system buffers keep the link busy meanwhile, and
 // rows sent too early cannot be cancelled. Chosen: 3 ms of a 10 Mbit/s link.
 constexpr std::size_t kAheadBytes = 4096;
-// Chosen: a tenth of the shortest round trip of interest. A server that prepares a frame for less does not say so.
+// Chosen: a tenth of the shortest round trip of interest. Shorter preparations of a frame are not stated.
 constexpr std::uint64_t kPreparationStatedNs = 100'000;
 
-// The smallest block of a session: its buffers and a small picture of a small scene. Chosen: the message buffers take
-// 1.1 MiB and the radiance of a 320×240 picture 0.9.
+// Smallest block of a session: its buffers and a small picture of a small scene. Chosen: the message buffers take 1.1
+// MiB and the radiance of a 320×240 picture 0.9 MiB.
 constexpr std::size_t kSessionBytesMin = 4u << 20;
 
 enum class SessionPhase : std::uint8_t {
   unused,
   serving,
-  leaving,  // is told why; further input is read and dropped
+  leaving,  // told why; further input is read and dropped
 };
 
 // The next stage of a job. Each takes one slice of CPU time, or as many as its pixels need.
@@ -40,38 +40,38 @@ enum class JobStage : std::uint8_t {
   build,          // the renderer
   own_exposure,   // of the scene, if it must be measured
   aim,            // camera, time, lights
-  search,         // for what may have changed since the last frame
+  search,         // for changes since the last frame
   view_exposure,  // of a view_query, answered afterwards
-  coarse,         // the coarse picture, if one is wanted
+  coarse,         // the coarse picture, if requested
   rows,
   light,  // a map of indirect light, before any rows
 };
 
-// The frame that a client waits for. Its rows are traced and sent in the request's order; of the next row to trace, the
-// image holds the first traced_columns pixels.
+// The frame that a client waits for. Its rows are traced and sent in the request's order; the image holds the first
+// traced_columns pixels of the next row to trace.
 struct FrameJob {
   const StoredScene* scene;  // null: no job
   FrameRequest request;
   bool is_view_query, measure_exposure;  // if is_view_query, only the fields of `request` that a query also has are set
   JobStage stage;
   ExposureProbe probe;
-  RowSequence traced, sent;  // what is left to trace, and to send
+  RowSequence traced, sent;  // rows left to trace, and to send
   std::uint32_t rows_traced, rows_sent;
   std::uint32_t traced_columns;
-  std::uint32_t coarse_row, coarse_column, coarse_rows;  // on the grid of the coarse picture: next pixel, rows at once
-  bool has_coarse;                                       // it is traced and waits to be sent
-  bool has_light, sent_light;          // the same of a light map, on whose grid the fields above count; it is sent
-  bool codes_beside;                   // its finished chunk is coded beside the next slice
+  std::uint32_t coarse_row, coarse_column, coarse_rows;  // next pixel on the grid of the coarse picture; rows at once
+  bool has_coarse;                                       // traced and waiting to be sent
+  bool has_light, sent_light;          // likewise for a light map, whose grid the fields above then use
+  bool codes_beside;                   // its finished chunk is coded in parallel with the next slice
   std::uint64_t work_ns, pixel_count;  // of rows traced but not completely sent
   std::uint64_t took_ns;               // CPU time so far,
-  std::uint64_t build_ns;              // of this for the renderer,
-  std::uint64_t prepare_ns;            // and before the first pixel
-  // Of each row of the picture, the pixels traced, if several ranks share the job: its complete rows are then packed.
-  // Null: this program alone renders.
+  std::uint64_t build_ns;              // including the renderer's preparation,
+  std::uint64_t prepare_ns;            // and the time before the first pixel
+  // Number of pixels traced per row of the picture, if several ranks share the job: its complete rows are then packed.
+  // Null: only this program renders.
   const std::uint32_t* row_pixels;
 };
 
-// Work traced at once: whole rows, or pixels of a slow row, or pixels of an exposure.
+// Work traced at once: whole rows, pixels of a slow row, or pixels of an exposure.
 struct Slice {
   std::uint32_t row_count, column_end, pixel_count;  // column_end: the job's next traced_columns
   std::uint32_t traced_count;                        // of the pixels; the others are the last frame's
@@ -82,12 +82,12 @@ struct Slice {
 
 struct Session;
 
-// Other ranks that trace rows of all jobs together with this one; remote/cluster/ has them.
+// Other ranks that trace rows of all jobs together with this one; implemented in remote/cluster/.
 struct HelperRanks {
   void* context;
-  // Tells them of a job before its frame is prepared, and sets its row_pixels.
+  // Announces a job before its frame is prepared, and sets its row_pixels.
   void (*begin)(void* context, Session* session);
-  // Traces next pixels of the job with them, for about `slice_ns`, and packs rows that are complete.
+  // Traces next pixels of the job with them, for about `slice_ns`, and packs complete rows.
   Slice (*trace)(void* context, Session* session, std::uint64_t slice_ns);
 };
 
@@ -105,19 +105,19 @@ struct Session {
   char reason[160] = {0};               // why it must leave
   std::uint32_t message_bytes_max = 0;  // largest message the client accepts
   int address = -1;                     // index of the server's account for its address
-  std::uint64_t seated_ns = 0;          // since when it has its place
+  std::uint64_t seated_ns = 0;          // when it got its place
   Account account;
   std::uint64_t ended_took_ns = 0, ended_sent_ns = 0, ended_build_ns = 0;  // of finished frames not yet accounted for
   std::uint32_t chunk_count = 0;                                           // sent to the client
 
   Arena block;
   std::size_t frame_mark = 0;     // in the block, behind the buffers
-  std::size_t touched_bytes = 0;  // of the block, which the system has provided by now
+  std::size_t touched_bytes = 0;  // part of the block that the system has provided by now
   MessageStream messages;
   bool more_to_take = false;  // complete messages may wait in the input
 
   CodecShape shape;               // of the last request
-  RowEncoder* encoder = nullptr;  // null: not yet made for the shape
+  RowEncoder* encoder = nullptr;  // null: not yet created for the shape
   Array<std::uint8_t> pixels;     // the picture in wire format
   Renderer renderer;
   const StoredScene* built_scene = nullptr;  // the scene the renderer is built for; null: none
@@ -143,7 +143,7 @@ struct Session {
 
 // Places the buffers in the block.
 void make_session(void* memory, std::size_t byte_count, Session* session);
-// Resets it for another client, on that connection.
+// Resets it for another client on that connection.
 void restart_session(Session* session, platform::Link* link, int connection);
 
 // True if messages may wait and there is room to answer them.
@@ -155,7 +155,7 @@ void send_error(Session* session, WireError code, std::uint32_t frame);
 
 // True if there is a job.
 inline bool has_job(const Session& session) { return session.job.scene != nullptr; }
-// Ends the job and charges the time of rows that were not sent, or were but a part of those asked for, as wasted.
+// Ends the job and charges as wasted the time of rows not sent, or beyond the sent fraction of the requested rows.
 void drop_job(Session* session);
 // True if the coarse picture or a chunk of the job is completely traced and may be queued.
 bool has_chunk(const Session& session);
@@ -163,7 +163,7 @@ bool has_chunk(const Session& session);
 bool can_work(const Session& session);
 
 // Advances a job by a slice, of about `slice_ns` if it consists of pixels. Fails if the request cannot be met; *code
-// says why.
+// receives the reason.
 Status step_job(Session* session, const JobTools& tools, std::uint64_t slice_ns, Slice* slice, WireError* code);
 // Enters the stages of the job's rows.
 void begin_job_rows(Session* session);
@@ -174,30 +174,30 @@ Status answer_view_query(Session* session);
 // behind it.
 std::uint32_t slice_pixels(const Settings& settings, std::uint32_t light_point_count, double known_ns,
                            std::uint64_t slice_ns);
-// Updates the time of an expensive pixel after pixels of `new_ns` each: falls slowly when they are cheap. By an eighth,
-// chosen: it halves in five slices, so that background between dear pixels does not hide them.
+// Updates the time of an expensive pixel after pixels of `new_ns` each: falls slowly if they are cheap. By an eighth,
+// chosen: it halves in five slices, so that background between expensive pixels does not hide them.
 inline double dear_pixel_ns(double known_ns, double new_ns) {
   return new_ns > 0.875 * known_ns ? new_ns : 0.875 * known_ns;
 }
-// Whether the coarse picture is asked for and fits a message.
+// Returns whether the coarse picture is requested and fits a message.
 bool wants_coarse(const Session& session);
-// Traces the next pixels of it, for about `slice_ns`; sends it.
+// Traces the next pixels of the coarse picture, for about `slice_ns`; sends it.
 Slice trace_coarse(Session* session, std::uint64_t slice_ns);
 void send_coarse(Session* session);
 inline PixelFormat pack_format(WireFormat format) { return format == WireFormat::rgb565 ? kRgb565 : kRgb888; }
-// The next rows to trace, at most kRunCountMax ranges; returns their number.
+// Lists the next rows to trace, at most kRunCountMax ranges; returns their number.
 std::uint32_t next_ranges(const FrameJob& job, std::uint32_t row_count, RowRange* ranges);
-// Whether a message can hold the light map that the job asks for.
+// Fails if no message can hold the light map that the job requests.
 Status check_light_map(const Session& session);
-// Traces the next lights of it, for about `slice_ns`; accounts for them; sends the map, which ends a job without rows.
+// Traces and accounts for next lights, for about `slice_ns`; sends the map, which ends a job without rows.
 Slice trace_light(Session* session, std::uint64_t slice_ns);
 void end_light_slice(Session* session, const Slice& slice, std::uint64_t took_ns);
 void send_light(Session* session);
 // Picoseconds per pixel, as messages state them.
 std::uint32_t picoseconds(std::uint64_t ns, std::uint64_t pixel_count);
-// Traces the next pixels of the job, for about `slice_ns`, and codes the finished chunk beside them if it codes_beside.
+// Traces the next pixels of the job, for about `slice_ns`, and codes the finished chunk in parallel if codes_beside.
 Slice trace_slice(Session* session, std::uint64_t slice_ns);
-// Packs rows of the image in the session's picture.
+// Packs rows of the image into the session's picture.
 void pack_session_rows(Session* session, std::uint32_t row_begin, std::uint32_t row_end);
 // Accounts for a slice that took that much CPU time.
 void end_slice(Session* session, const Slice& slice, std::uint64_t took_ns);

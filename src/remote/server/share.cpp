@@ -11,11 +11,11 @@ namespace pocketray {
 
 namespace {
 
-// The side whose turn it is; at least one waits.
+// Returns the side whose turn it is; at least one must wait.
 int choose_side(Turns* turns, bool first_waits, bool second_waits) {
   const bool waits[2] = {first_waits, second_waits};
   for (int side = 0; side < 2; ++side) {
-    // A side that was away is credited little of the time.
+    // A side that was away is credited only a little of that time.
     const std::uint64_t other = turns->used_ns[1 - side], credit = std::min(other, kCreditNs);
     if (waits[side] && !turns->waits[side]) turns->used_ns[side] = std::max(turns->used_ns[side], other - credit);
     turns->waits[side] = waits[side];
@@ -111,7 +111,7 @@ void observe_demand(Account* account, std::uint64_t passed_ns) {
 double crowding(const Lanes& lanes, const Account& account) {
   const int lane = is_heavy(account) ? 1 : 0;
   const double others = std::max(0.0, lanes.demand[lane] - account.demand);
-  // The turns that the other lane takes while it has work.
+  // Fraction of the turns that the other lane takes while it has work.
   constexpr double kHeavyTurns = 1.0 / kBehindPart;
   const double lost = std::min(1.0, lanes.demand[1 - lane]) * (lane == 1 ? 1 - kHeavyTurns : kHeavyTurns);
   return (1 + others) / (1 - lost);

@@ -1,4 +1,4 @@
-// State of a render server, shared by its files: guests.cpp admits clients, places.cpp gives them places, server.cpp
+// State of a render server, shared by its files: guests.cpp admits clients, places.cpp assigns places, server.cpp
 // handles time-outs and departures, messages.cpp handles messages, work.cpp gives each client its turn, job.cpp
 // renders.
 #pragma once
@@ -10,8 +10,8 @@
 
 namespace pocketray {
 
-// Chosen: beside kServerClientsMax addresses in use, 192 that have gone keep their accounts. With fewer, a client could
-// shed its debt sooner by returning after others; more take longer to search.
+// Chosen: besides kServerClientsMax addresses in use, 192 that have gone keep their accounts. With fewer, a client
+// could shed its debt sooner by returning after others; more take longer to search.
 constexpr int kAddressCountMax = 256;
 // Any hello, even of another version. Derived: 8 + 256 bytes (PROTOCOL.md), rounded up to 16.
 constexpr std::size_t kGuestInputBytes = 272;
@@ -43,7 +43,7 @@ struct Work {
   std::uint64_t byte_count = 0;  // of the answers
   std::uint64_t job_number = 0;
   Slice slice = {};       // without pixels: preparing a frame
-  bool is_build = false;  // prepares the renderer for frames to come
+  bool is_build = false;  // prepares the renderer for later frames
   std::uint64_t begin_ns = 0, end_ns = 0;
   std::uint64_t cpu_ns = 0;   // to charge
   platform::LinkTimer timer;  // until the emulated CPU has done it
@@ -76,7 +76,7 @@ struct Server {
 
 inline std::uint64_t now_ns(Server* server) { return server->net->now_ns(server->link); }
 
-// The clock by which the CPU's time is shared.
+// The clock that measures CPU time.
 inline std::uint64_t cpu_now_ns(Server* server) {
   return server->options.cpu_ns ? server->options.cpu_ns() : now_ns(server);
 }
@@ -90,14 +90,14 @@ inline bool in_turn(const Server& server) { return !is_paced(server.options.pace
 void close_guest(Guest* guest);
 // Tends all guests and accepts more if `comes`, unless that has to wait.
 void tend_guests(Server* server, bool comes);
-// Drops pending input; false if the peer has closed.
+// Drops pending input; returns false if the peer has closed.
 bool discard_input(MessageStream* messages);
 
 // ---- places.cpp
 
-// Places that an address has.
+// Number of places that an address has.
 int places_of(const Server& server, int address);
-// A free place for a newcomer of that address, or one whose session had to leave; null if there is none.
+// Returns a free place for a newcomer of that address, or one whose session had to leave; null if there is none.
 Session* find_place(Server* server, int address);
 
 // ---- server.cpp
@@ -113,14 +113,14 @@ void end_session(Server* server, Session* session, const char* reason);
 void read_session(Server* server, Session* session);
 // Handles messages for up to a slice, as far as there is room to answer. Returns their number.
 int take_messages(Server* server, Session* session);
-// To a guest of that address.
+// Hello to a guest of that address.
 Message server_hello(const Server& server, std::uint64_t address_key);
 
 // ---- work.cpp
 
 // Charges CPU time to this client, for a frame or otherwise.
 void account_for(Server* server, Session* session, std::uint64_t took_ns, bool is_job);
-// The price of the server's time for one more connection of that address.
+// Price of the server's time for one more connection of that address.
 std::uint16_t newcomer_price(const Server& server, std::uint64_t address_key);
 // Tells the client that a request is refused, and logs why.
 void refuse(Server* server, Session* session, WireError code, std::uint32_t frame, const char* reason);

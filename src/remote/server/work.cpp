@@ -7,7 +7,7 @@
 namespace pocketray {
 namespace {
 
-// Chosen: coding takes a tenth of the time of a slice, of which all threads but one would wait.
+// Chosen: coding takes a tenth of a slice's time, for which all threads but one would wait.
 constexpr double kBesideSlices = 10;
 
 std::uint64_t elapsed(std::uint64_t begin, std::uint64_t end) { return end > begin ? end - begin : 0; }
@@ -42,7 +42,7 @@ void settle(Server* server, std::uint64_t now) {
   }
 }
 
-// States each client's price anew.
+// Sets each client's price anew.
 void set_prices(Server* server) {
   clear_demand(&server->lanes);
   for (Address& address : server->addresses) {
@@ -66,8 +66,8 @@ bool has_turn(const Server& server, const Session& session) {
   return can_work(session) || (in_turn(server) && (wants_messages(session) || has_chunk(session)));
 }
 
-// Chooses among sessions with work: the next session of the next address. Records when each began to wait. -1 if there
-// is none.
+// Chooses among sessions with work: the next session of the next address. Records when each began to wait. Returns -1
+// if there is none.
 int choose_session(Server* server) {
   std::uint64_t now = now_ns(server);
   settle(server, now);
@@ -99,13 +99,13 @@ int choose_session(Server* server) {
   return choose(&server->addresses[static_cast<std::size_t>(chosen)].lanes, choice);
 }
 
-// The worse of its lanes: among the connections of its address, and its address's among the others.
+// The worse of its lanes: its own among its address's connections, and its address's among the others.
 Lane lane_of(const Server& server, const Session& session) {
   const Address& address = server.addresses[static_cast<std::size_t>(session.address)];
   return std::max(session.account.lane, address.account.lane);
 }
 
-// Short for those that a client of a better lane could have to wait for.
+// Short for sessions that a client of a better lane might have to wait for.
 std::uint64_t slice_ns(const Server& server, const Session& session) {
   const Lane lane = lane_of(server, session);
   for (const Session& other : server.sessions)
@@ -136,7 +136,7 @@ std::uint64_t work_ns(const Server& server, const Session& session, const Work& 
   return static_cast<std::uint64_t>(work.message_count) * o.message_ns + work.byte_count * o.byte_ps / 1000;
 }
 
-// Time for rows coded since the last call, on the emulated CPU if there is one.
+// Time of coding rows since the last call, on the emulated CPU if there is one.
 std::uint64_t take_coding_ns(const Server& server, Session* session) {
   const std::uint64_t pixels = session->coded_pixels, bytes = session->code_bytes;
   session->coded_pixels = session->code_bytes = 0;
@@ -164,8 +164,8 @@ void code_chunks(Server* server, Session* session) {
   }
 }
 
-// Whether to code finished rows beside the next slice, which delays them until its end but leaves no thread idle. Not
-// the first ones, for which the link waits. An emulated CPU has one core.
+// Returns whether to code finished rows in parallel with the next slice, which delays them until its end but leaves no
+// thread idle. Not the first ones, for which the link waits. An emulated CPU has one core.
 bool pays_to_wait(const Server& server, const Session& session, std::uint64_t slice_ns) {
   if (!server.workers || is_paced(server.options.pace) || server.options.helpers) return false;
   const FrameJob& job = session.job;

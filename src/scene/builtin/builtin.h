@@ -15,10 +15,10 @@ struct BuiltinScene {
 
 // All built-in scenes; sets *count to their number.
 const BuiltinScene* builtin_list(int* count);
-// Null if no scene has that name.
+// Returns null if no scene has that name.
 const BuiltinScene* find_builtin(const char* name);
 
-// `cornell` with a mirror sphere of that many columns, at least 4: shows the cost and gain of tessellation.
+// `cornell` with a mirror sphere of `columns` columns, at least 4: shows the cost and gain of tessellation.
 constexpr std::uint32_t kCornellSphereColumns = 64;  // as in `cornell` itself
 std::size_t tessellated_cornell_need(std::uint32_t sphere_columns);
 void build_tessellated_cornell(std::uint32_t sphere_columns, Arena* arena, Scene* scene);

@@ -12,7 +12,7 @@ namespace {
 
 constexpr MeshSize kRoomSize = {17, 19};
 constexpr FigureDetail kFigure = {113, 164, 31, 34, 23};
-// As many rows as make facets about as high as wide.
+// Makes facets about as high as wide.
 constexpr std::uint32_t sphere_rows(std::uint32_t columns) { return (9 * columns + 8) / 16; }
 constexpr MeshSize size_of(std::uint32_t sphere_columns) {
   return kRoomSize + box_size() + sphere_size(sphere_columns, sphere_rows(sphere_columns)) + figure_size(kFigure);

@@ -108,7 +108,7 @@ float cone_distance(const Vec3& p, const Vec3& a, const Vec3& b, float ra, float
   return length(ap - ab * h) - (ra + (rb - ra) * h);
 }
 
-// Whether y is further than `margin` outside the interval [a, b]: such blobs do not affect the surface at y.
+// Returns whether y is more than `margin` outside the interval [a, b]: such blobs do not affect the surface at y.
 bool beyond(float y, float a, float b, float margin) {
   return (y < a - margin && y < b - margin) || (y > a + margin && y > b + margin);
 }

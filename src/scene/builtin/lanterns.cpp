@@ -1,5 +1,5 @@
 // A street on the night of a lantern festival: 200 lanterns, each a point light below a paper shade, and twelve lit
-// windows, which are area lights. For lights in numbers.
+// windows, which are area lights. Tests scenes with many lights.
 #include "base/check.h"
 #include "base/rng.h"
 #include "scene/builtin/builtin_scenes.h"
@@ -44,7 +44,7 @@ enum MaterialIndex : std::uint32_t {
   kMaterialCount = kWindow + 2 * kWindowCount
 };
 
-// A shade of the festival's three, by its number.
+// One of the festival's three shades, by number.
 struct Shade {
   Vec3 paper, light;
 };
@@ -57,7 +57,7 @@ struct Festival {
   std::uint32_t light_count = 0;
 };
 
-// A lantern and its light, just below, whose paper shades everything above.
+// A lantern and its light just below it, whose shade hides everything above.
 void add_lantern(Festival* f, const Vec3& at, float radius, std::uint32_t shade, float brightness) {
   CHECK_LT(shade, 3u);
   CHECK_LT(f->light_count, f->lights.count);

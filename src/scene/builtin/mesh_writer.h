@@ -17,7 +17,7 @@ struct MeshWriter {
   Array<Vec3> positions, normals;
   Array<Triangle> triangles;
   std::uint32_t vertex_count = 0, triangle_count = 0;  // so far
-  std::uint32_t material = 0;                          // of the triangles appended next
+  std::uint32_t material = 0;                          // for the triangles appended next
 };
 
 constexpr std::size_t mesh_need(MeshSize size) {
@@ -53,13 +53,13 @@ constexpr MeshSize lathe_size(std::uint32_t columns, std::uint32_t points, std::
 void add_lathe(MeshWriter* mesh, const Vec3& center, Array<const Vec2> profile, std::uint32_t columns);
 
 // Appends the triangles of a grid of columns × rows vertices that wraps around (column `columns` is column 0) and ends
-// in two poles. The vertices are in this order: first pole, row by row, last pole. `first_vertex` is the first pole.
+// in two poles. Order of the vertices: first pole, row by row, last pole. `first_vertex` is the first pole.
 constexpr MeshSize tube_size(std::uint32_t columns, std::uint32_t rows) {
   return {columns * rows + 2, 2 * columns * rows};
 }
 void add_tube_triangles(MeshWriter* mesh, std::uint32_t first_vertex, std::uint32_t columns, std::uint32_t rows);
 
-// Sets the vertices from `first_vertex` on to the area-weighted mean of their triangles' normals.
+// Sets the normals of vertices from `first_vertex` on to the area-weighted mean of their triangles' normals.
 void smooth_normals(MeshWriter* mesh, std::uint32_t first_vertex, std::uint32_t first_triangle);
 
 }  // namespace pocketray

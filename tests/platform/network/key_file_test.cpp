@@ -59,7 +59,7 @@ TEST_CASE("key_file_never_overwrites") {
   for (const char* name : {"file", "link", "dangling"}) {
     CAPTURE(name);
     CHECK_FALSE(create_key_file(folder.file(name).c_str(), some_key(), &error));
-    CHECK(std::strstr(error.text, "there is a file of that name") != nullptr);
+    CHECK(std::strstr(error.text, "a file of that name exists") != nullptr);
   }
   CHECK(content_of(folder.file("file")) == "old");
   CHECK_EQ(access(folder.file("none").c_str(), F_OK), -1);

@@ -71,8 +71,8 @@ TEST_CASE("tls_link_wrong_keys_connect_nobody") {
     TlsMeeting m = rig.meet();
     CHECK_FALSE(m.device_connected);
     CHECK_FALSE(m.server_connected);
-    CHECK(says(m.device_error, "its key is another: copy the same key file to both sides"));
-    CHECK(says(m.server_error, "its key is another: copy the same key file to both sides"));
+    CHECK(says(m.device_error, "its key differs: copy the same key file to both sides"));
+    CHECK(says(m.server_error, "its key differs: copy the same key file to both sides"));
     CHECK_EQ(tls_link_record(rig.server).failures, 1u);
   }
 }
@@ -295,7 +295,7 @@ TEST_CASE("tls_link_tells_plain_peers_apart") {
     result = rig.device->backend->connected(rig.device, device, &why);
   }
   CHECK(result == LinkResult::failed);
-  CHECK(says(why, "it does not use TLS: give it a key, too"));
+  CHECK(says(why, "it does not use TLS: give it the key, too"));
 }
 
 // Goal: of a stream that is tampered with after the handshake nothing false is read, and its end is no regular one.

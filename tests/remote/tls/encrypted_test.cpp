@@ -67,9 +67,9 @@ TEST_CASE("encrypted_pairs_that_do_not_fit_say_so") {
     const char *device_says, *server_says;
   };
   const int plain = EncryptedRig::kPlain;
-  const Pair pairs[] = {{1, 2, "its key is another: copy the same key file", "its key is another"},
-                        {1, plain, "it asks for a key: use the one that it was given (--key)", "it does not use TLS"},
-                        {plain, 1, "it does not use TLS: give it a key, too", "it did not begin with a hello"}};
+  const Pair pairs[] = {{1, 2, "its key differs: copy the same key file", "its key differs"},
+                        {1, plain, "it requires a key: use the server's key (--key)", "it does not use TLS"},
+                        {plain, 1, "it does not use TLS: give it the key, too", "it did not begin with a hello"}};
   for (const Pair& pair : pairs) {
     CAPTURE(pair.server_key);
     CAPTURE(pair.device_key);
