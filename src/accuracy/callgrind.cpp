@@ -6,7 +6,7 @@
 namespace pocketray {
 namespace {
 
-// The text after `name` at the start of a line other than the first; null if not found.
+// Returns the text after `name` at the start of a line other than the first; null if not found.
 const char* value_of(const std::string& text, const std::string& name) {
   std::size_t at = text.find("\n" + name);
   return at == std::string::npos ? nullptr : text.c_str() + at + 1 + name.size();

@@ -5,8 +5,8 @@
 
 namespace pocketray {
 
-// Instructions in a dump that callgrind made before entering a function (--dump-before), counted since the previous
-// dump. False if the text is not such a dump or is incomplete.
+// Reads the number of instructions from a dump that callgrind made before entering a function (--dump-before), counted
+// since the previous dump. Returns false if the text is not such a dump or is incomplete.
 bool read_callgrind_dump(const std::string& text, std::uint64_t* instructions);
 
 }  // namespace pocketray

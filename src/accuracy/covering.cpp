@@ -17,7 +17,7 @@ struct Pair {
 struct Search {
   const std::vector<std::vector<double>>& prices;
   double limit;
-  std::vector<Pair> open;  // still to be covered
+  std::vector<Pair> open;  // not yet covered
 
   // Price of the cheapest row that agrees with this one.
   double price(const std::vector<int>& row) const {
@@ -45,8 +45,8 @@ struct Search {
       return (p.knob[0] == knob && p.level[0] == level) || (p.knob[1] == knob && p.level[1] == level);
     }));
   }
-  // The level that covers most pairs with the levels already set; on ties the one with most open pairs elsewhere, then
-  // the cheapest.
+  // Returns the level that covers most pairs with the levels already set; on ties, the one with most open pairs
+  // elsewhere, then the cheapest.
   int best_level(std::vector<int> row, std::size_t knob) const {
     int best = kOpen;
     std::size_t most = 0, most_demand = 0;

@@ -21,7 +21,7 @@ PictureErrors picture_errors(const std::vector<double>& reference, const std::ve
     relative += difference * difference / (reference[i] * reference[i] + kRelativeFloor);
     size[i] = std::fabs(difference);
   }
-  // The smallest value that at least 99 % do not exceed.
+  // Smallest value that at least 99 % do not exceed.
   std::size_t rank = static_cast<std::size_t>(std::ceil(0.99 * count)) - 1;
   std::nth_element(size.begin(), size.begin() + static_cast<std::ptrdiff_t>(rank), size.end());
   errors.p99 = size[rank];

@@ -62,7 +62,7 @@ double hyab(const Color& a, const Color& b) { return std::fabs(a.x - b.x) + std:
 
 // ---- Filters. All are sums of separable filters; border pixels are repeated outwards.
 
-// Along one axis: `line_count` lines, `line_step` apart, of `count` pixels, `step` apart.
+// Convolves along one axis: `line_count` lines, `line_step` apart, of `count` pixels, `step` apart.
 void convolve_lines(const std::vector<double>& in, const std::vector<double>& filter, std::size_t count,
                     std::size_t step, std::size_t line_count, std::size_t line_step, std::vector<double>* out) {
   std::ptrdiff_t radius = static_cast<std::ptrdiff_t>(filter.size() / 2);
@@ -109,7 +109,7 @@ struct Sensitivity {
 constexpr Sensitivity kAchromatic = {1, 0.0047, 0, 1e-5}, kRedGreen = {1, 0.0053, 0, 1e-5},
                       kBlueYellow = {34.1, 0.04, 13.5, 0.025};
 
-// One channel seen from a distance (sec. 4.1, eq. 3).
+// Returns one channel as seen from a distance (sec. 4.1, eq. 3).
 Plane see(const Plane& channel, const Sensitivity& s, double pixels_per_degree) {
   // Three standard deviations of the widest Gaussian of all channels.
   int radius = static_cast<int>(std::ceil(3 * std::sqrt(0.04 / (2 * kPi * kPi)) * pixels_per_degree));
@@ -119,7 +119,7 @@ Plane see(const Plane& channel, const Sensitivity& s, double pixels_per_degree) 
       return std::exp(-kPi * kPi * degrees * degrees / b);
     });
   };
-  // The weights of both Gaussians over the plane, then each along one axis.
+  // Weights of both Gaussians over the plane, then each along one axis.
   std::vector<double> first = gaussian(s.b1), second = gaussian(s.b2);
   double weight1 = s.a1 * std::sqrt(kPi / s.b1) * sum(first) * sum(first);
   double weight2 = s.a2 * std::sqrt(kPi / s.b2) * sum(second) * sum(second);
@@ -161,7 +161,7 @@ std::vector<Color> perceived(const Seen& picture, double pixels_per_degree) {
   return result;
 }
 
-// Errors to the power q_c, large ones compressed into the last 1 - p_t of the scale (eq. 7).
+// Raises errors to the power q_c, with large ones compressed into the last 1 - p_t of the scale (eq. 7).
 double color_error(const Color& a, const Color& b) {
   constexpr double qc = 0.7, pc = 0.4, pt = 0.95;
   static const double largest = std::pow(hyab(hunt_lab_of_linear({0, 1, 0}), hunt_lab_of_linear({0, 0, 1})), qc);

@@ -23,7 +23,7 @@ inline std::string gnuplot_string(const std::string& text) {
   return quoted(line, "''");
 }
 
-// A gnuplot string in lines of at most so many bytes, as far as the text has spaces.
+// A gnuplot string broken at spaces into lines of at most `line_bytes` bytes, where possible.
 inline std::string gnuplot_lines(const std::string& text, std::size_t line_bytes) {
   std::string lines;
   for (std::size_t begin = 0; begin < text.size();) {

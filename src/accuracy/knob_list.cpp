@@ -74,7 +74,7 @@ std::vector<Knob> make_knobs() {
        false},
 #ifdef POCKETRAY_HAVE_NETWORK
       {"near-lossless",
-       "rows from a render server of which each channel may be off by one level of the pixel format",
+       "rows from a render server whose channels may be off by one level of the pixel format",
        "display",
        0,
        nullptr,

@@ -1,5 +1,5 @@
-// The knobs: every row of effect/setting_list.h and whatever else trades accuracy for time. A sweep varies each knob
-// that matters to the scene; a new row is swept, priced and plotted without further code.
+// The knobs: every row of effect/setting_list.h, and everything else that trades accuracy for time. A sweep varies each
+// knob that affects the scene; a new row is swept, priced and plotted without further code.
 #pragma once
 #include <functional>
 #include <string>
@@ -24,26 +24,26 @@ constexpr int kOutputFormatCount = 3;
 // Index of the format with that name, or -1.
 int find_output_format(const std::string& name);
 
-// Everything a knob can change.
+// Everything that a knob can change.
 struct Configuration {
   Settings settings;
-  int output = 1;                                        // of kOutputFormats: the handheld's
-  std::uint32_t sphere_columns = kCornellSphereColumns;  // of cornell
+  int output = 1;                                        // index into kOutputFormats: the handheld's
+  std::uint32_t sphere_columns = kCornellSphereColumns;  // of cornell's sphere
   bool near_lossless = false;                            // rows come from a render server, coded with small errors
 };
 
 struct Knob {
   const char* name = nullptr;       // "samples"
   const char* what = nullptr;       // "rays through each pixel"
-  std::string effect;               // the effect it belongs to, as displayed
-  EffectMask needs = 0;             // it has an effect if any of these is on; 0: always
+  std::string effect;               // name of the effect that it belongs to
+  EffectMask needs = 0;             // effective only if any of these is on; 0: always
   const char* scene = nullptr;      // the only built-in scene with this knob; null: all
-  const char* theory = nullptr;     // for the slope of RMSE over time; empty: theory gives no number
-  std::vector<double> values;       // the least accurate first
-  std::vector<const char*> labels;  // one for each value; empty: the numbers themselves
+  const char* theory = nullptr;     // expected slope of RMSE over time; empty: theory predicts none
+  std::vector<double> values;       // least accurate first
+  std::vector<const char*> labels;  // one per value; empty: the numbers themselves
   std::function<double(const Configuration& configuration)> get;
   std::function<void(Configuration* configuration, double value)> set;
-  double (*price)(double value) = nullptr;  // rough relative frame time; null: the value matters little
+  double (*price)(double value) = nullptr;  // rough relative frame time; null: the value hardly matters
   bool alone = false;                       // never varied together with others
   bool is_setting = true;                   // can change from frame to frame
 };
@@ -54,9 +54,9 @@ const std::vector<Knob>& knob_list();
 std::string value_label(const Knob& knob, double value);
 // The knob's values in order, including the baseline's.
 std::vector<double> knob_values(const Knob& knob, const Configuration& baseline);
-// True if the knob has an effect in the scene with that name and plan; otherwise *why says why not.
+// True if the knob has an effect in the scene with that name and plan; otherwise *why receives the reason.
 bool knob_applies(const Knob& knob, const std::string& scene, const EffectPlan& plan, std::string* why);
-// Rough frame time with `value`, relative to the baseline, for skipping values that would take too long.
+// Rough frame time with `value`, relative to the baseline, used to skip values that would take too long.
 double relative_price(const Knob& knob, const Configuration& baseline, double value);
 
 }  // namespace pocketray

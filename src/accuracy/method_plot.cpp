@@ -6,9 +6,9 @@
 namespace pocketray {
 namespace {
 
-// Longer labels would cover the lines; the page's table has them all.
+// Longer labels would cover the lines; the page's table lists them all.
 constexpr std::size_t kLabelMax = 20;
-constexpr double kLabelStep = 0.12;  // between points of a line that are labelled, of the plot's width
+constexpr double kLabelStep = 0.12;  // minimum distance of labelled points on a line, relative to the plot's width
 
 }  // namespace
 

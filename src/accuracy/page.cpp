@@ -69,7 +69,7 @@ std::string head_of(const Sweep& sweep, const PagePictures& pictures) {
   return text + "</header>\n";
 }
 
-// Which knobs buy the most, in a sentence or two.
+// Says which knobs buy the most, in a sentence or two.
 std::string answer_of(const Sweep& sweep) {
   const KnobFigures *first = nullptr, *last = nullptr;
   std::string free, idle, sent;
@@ -115,7 +115,7 @@ std::string knob_section(const Sweep& sweep, const PagePictures& pictures, const
          value_table(sweep, knob.name);
 }
 
-// The same front as seen from the other kind of reference.
+// The front against the other kind of reference.
 std::string other_section(const Sweep& sweep, const PagePictures& pictures) {
   if (!knows_other(sweep)) return "";
   const Sweep other = against_other(sweep);
@@ -129,23 +129,22 @@ std::string other_section(const Sweep& sweep, const PagePictures& pictures) {
 
 std::string methods_section(const Sweep& sweep, const PagePictures& pictures) {
   if (methods_of(sweep).size() < 2) return "";
-  return "<h2>Methods of indirect light</h2>\n<p>Each with every combination of its own settings, with the baseline’s "
-         "samples and with four, and whatever else was measured with it: those that no other of the method beats, "
-         "against "
+  return "<h2>Methods of indirect light</h2>\n<p>Each method with every combination of its own settings, at the "
+         "baseline’s samples and at four, and everything else that was measured with it: its Pareto front against "
          "full light transport.</p>\n" +
          pair(plot_figure(pictures, "indirect"), method_table(sweep));
 }
 
-// How rows were sent, if they were.
+// Describes how rows were sent, if they were.
 std::string sent_method(const Sweep& sweep) {
   for (const Measured& m : sweep.measured)
     if (std::isfinite(m.bytes_per_frame))
       return format(
-          " Bytes per frame are of all rows of a picture from a render server, without the messages around them. For "
-          "them the camera orbits its target by %g° a frame and comes to rest in the picture that is judged, the last "
-          "of %u. Each picture goes through encoder and decoder, its rows predicted from the picture before and from "
-          "each other; the first, which has none before, does not count. “near-lossless on” shows what the decoder "
-          "then holds. Devices without a server have no such setting, and so it is not on the front.",
+          " Bytes per frame cover all rows of a picture from a render server, without message overhead. To measure "
+          "them, the camera orbits its target by %g° per frame and ends at the judged picture, the last "
+          "of %u. Each picture passes through encoder and decoder, its rows predicted from the previous picture and "
+          "from each other; the first, which has no predecessor, does not count. “near-lossless on” shows the "
+          "decoder’s result. Devices without a server have no such setting, so it is not on the front.",
           kSentOrbitDegrees, kSentFrames);
   return "";
 }

@@ -14,7 +14,7 @@ struct PagePictures {
   std::map<std::string, std::string> plots;   // text of SVG, as gnuplot writes it
 };
 
-// Also well-formed XML. Deterministic for a given sweep and pictures.
+// The page is also well-formed XML, and deterministic for a given sweep and pictures.
 std::string page_of(const Sweep& sweep, const PagePictures& pictures);
 
 }  // namespace pocketray

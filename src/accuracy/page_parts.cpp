@@ -11,7 +11,7 @@ void replace_all(std::string* text, const std::string& from, const std::string& 
     text->replace(at, from.size(), to);
 }
 
-// Makes gnuplot's SVG an element of the page: drops the file header and makes ids unique.
+// Turns gnuplot's SVG into an element of the page: drops the file header and makes ids unique.
 std::string inline_svg(const std::string& name, const std::string& file) {
   std::size_t begin = file.find("<svg");
   if (begin == std::string::npos) return "";

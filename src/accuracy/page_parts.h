@@ -8,7 +8,7 @@ namespace pocketray {
 std::string page_begin(const std::string& title);
 constexpr char kPageEnd[] = "</body>\n</html>\n";
 
-// gnuplot's SVG as part of the page; `name` must be unique in it. Empty if `svg` is no SVG.
+// gnuplot's SVG as part of the page; `name` must be unique in it. Empty if `svg` is not SVG.
 std::string svg_figure(const std::string& name, const std::string& svg);
 // A PNG file's bytes as part of the page.
 std::string image(const std::string& png, const std::string& alternative);

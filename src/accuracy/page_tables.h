@@ -12,7 +12,7 @@ std::string price_table(const Sweep& sweep);
 std::string front_table(const Sweep& sweep);
 // The front of each method of indirect light, as in its plot.
 std::string method_table(const Sweep& sweep);
-// All figures of one knob's values; for "several", of the combined settings.
+// All figures of one knob's values; for "several", those of the combined settings.
 std::string value_table(const Sweep& sweep, const std::string& knob);
 
 }  // namespace pocketray

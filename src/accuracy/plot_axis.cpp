@@ -9,9 +9,9 @@
 namespace pocketray {
 namespace {
 
-constexpr double kSpanMax = 1e12;  // of an axis; smaller values are drawn at its end
+constexpr double kSpanMax = 1e12;  // maximum ratio of an axis; smaller values are drawn at its end
 
-// Tics at 1, 2 and 5 of each decade; with many decades only at 1.
+// Tics at 1, 2 and 5 of each decade; only at 1 if there are many decades.
 std::string logarithmic_tics(const Axis& axis) {
   bool many = axis.high / axis.low > 1e3;
   std::vector<std::string> tics;

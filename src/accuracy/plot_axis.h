@@ -14,11 +14,11 @@ struct Axis {
   double zero = 0;  // above 0: the axis is logarithmic and some value is not above 0
 };
 
-// For finite values. Includes `limit`, unless 0, if that adds at most a decade. A linear axis starts at 0 if
-// `from_zero`; otherwise it adds a margin of at least a tenth of the values.
+// Range for finite values. Includes `limit`, unless 0, if that adds at most a decade. A linear axis starts at 0 if
+// `from_zero`; otherwise it has a margin of at least a tenth of the values.
 Axis axis_of(const std::vector<double>& values, double limit, bool from_zero);
 
-// The value as the axis draws it, and where that is: 0 at the low end, 1 at the high end.
+// The value as drawn on the axis, and its place: 0 at the low end, 1 at the high end.
 double drawn_value(const Axis& axis, double value);
 double place_on(const Axis& axis, double value);
 
@@ -34,11 +34,11 @@ struct PlotPoint {
 };
 struct Label {
   PlotPoint at;         // anchor
-  int align = 0;        // -1: the text begins there, 0: its middle is there, 1: it ends there
+  int align = 0;        // -1: the text begins there, 0: is centred, 1: ends there
   bool placed = false;  // there was room
 };
 
-// Places a label beside each of the first labels.size() points, none over another and as few as possible over points.
+// Places a label beside each of the first labels.size() points, without overlaps and over as few points as possible.
 std::vector<Label> place_labels(const PlotArea& area, const std::vector<PlotPoint>& points,
                                 const std::vector<std::string>& labels);
 

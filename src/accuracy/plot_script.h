@@ -1,4 +1,4 @@
-// The parts of gnuplot scripts that all plots share.
+// Parts that all gnuplot scripts share.
 #pragma once
 #include <string>
 #include <vector>
@@ -11,12 +11,12 @@ struct Plot {
   std::string name, script;  // "front"; the script's file is NAME.gnuplot
 };
 
-// Also distinct to the colour-blind [Okabe & Ito 2008, "Color Universal Design"], legible on black and on white.
+// Distinguishable by colour-blind readers [Okabe & Ito 2008, "Color Universal Design"], legible on black and on white.
 constexpr const char* kPlotColors[] = {"#0072b2", "#d55e00", "#009e73", "#cc79a7",
                                        "#56b4e9", "#e69f00", "#8c6bb1", "#b0a000"};
 constexpr int kPlotColorCount = 8;
 
-// Plots are drawn in SVG at this size, in PNG at twice it, so that they are legible at a phone's width.
+// Plots are drawn at this size in SVG and at twice this size in PNG, so that they are legible at a phone's width.
 constexpr int kPlotWidth = 620, kPlotFont = 17;
 
 struct PlotFrame {
@@ -26,8 +26,8 @@ struct PlotFrame {
 std::string frame_commands(const PlotFrame& frame);
 
 constexpr double kCharacter = 0.56 * kPlotFont, kLine = 1.25 * kPlotFont;  // pixels, of a label's text
-constexpr const char* kInk = "#777777";                                    // of what is said beside the figures
-// Texts beside the first of the points, as many as find room.
+constexpr const char* kInk = "#777777";                                    // for remarks beside the figures
+// Labels beside the first points, as many as fit.
 std::string label_commands(const PlotFrame& frame, const std::vector<PlotPoint>& points,
                            const std::vector<std::string>& texts, const char* color);
 // Shades the area below the limit on the y axis if it is in the plot. The label goes to the bottom left, where points

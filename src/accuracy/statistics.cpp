@@ -28,7 +28,7 @@ double between(double a, double b, double share) {
   return std::isfinite(b) ? a + (b - a) * share : b;
 }
 
-// The best-fitting law with a given exponent and its misfit: Σ of the squared relative differences of e².
+// The best-fitting law with a given exponent, and its misfit: the sum of the squared relative differences of e².
 struct LawAt {
   const std::vector<double>&time, &error;
   double resolution;

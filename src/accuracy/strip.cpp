@@ -83,7 +83,7 @@ void draw_row(Levels* strip, const StripLayout& at, int top, const Levels& refer
 }  // namespace
 
 std::array<std::uint8_t, 3> flip_color(float error) {
-  // matplotlib's map at every tenth; interpolated linearly.
+  // matplotlib's map at multiples of 1/10; interpolated linearly.
   constexpr std::uint8_t kMagma[11][3] = {{0, 0, 4},       {20, 14, 54},    {59, 15, 112},  {100, 26, 128},
                                           {140, 41, 129},  {183, 55, 121},  {222, 73, 104}, {247, 112, 92},
                                           {254, 159, 109}, {254, 207, 146}, {252, 253, 191}};

@@ -10,7 +10,7 @@ namespace pocketray {
 
 constexpr int kDifferenceGain = 8;
 
-// The colour of an error in [0, 1], from black over violet and orange to light yellow: the map "magma", as in the
+// The colour of an error in [0, 1], from black through violet and orange to light yellow: the map "magma", as in the
 // pictures of [Andersson20], interpolated linearly between its tenths.
 std::array<std::uint8_t, 3> flip_color(float error);
 
@@ -23,8 +23,8 @@ struct StripLayout {
 };
 StripLayout strip_layout(const Levels& reference, const Strip& strip);
 
-// A row per configuration: reference | setting | difference × kDifferenceGain | error map | time and error as text. All
-// pictures must have the reference's size.
+// One row per configuration: reference | setting | difference × kDifferenceGain | error map | time and error as text.
+// All pictures must have the reference's size.
 Levels draw_strip(const Levels& reference, const Strip& strip);
 
 // Encodes a picture as PNG.

@@ -11,7 +11,7 @@ namespace {
 
 constexpr const char* kSentNote = "as shown after the codec; the time is of tracing, without a server";
 
-// Times of finished rounds relative to the baseline's in the same round, whose runs share the state of the machine.
+// Times of finished rounds relative to the baseline's in the same round, whose runs share the machine's state.
 std::vector<double> ratios_of(const PointFigures& f, const PointFigures& baseline) {
   std::vector<double> ratios;
   for (std::size_t i = 0; i < std::min(f.ns_per_pixel.size(), baseline.ns_per_pixel.size()); ++i)
@@ -39,7 +39,7 @@ Measured measured_of(const SweepPoint& point, const PointFigures& f, const Point
   return m;
 }
 
-// Marks the front among the configurations a user can choose.
+// Marks the front among the configurations that a user can choose.
 void mark_front(double resolution, std::vector<Measured>* measured) {
   std::vector<std::size_t> there;
   std::vector<double> cost, error;

@@ -10,7 +10,7 @@
 namespace pocketray {
 namespace {
 
-// The least accurate, the baseline's and the best of the available values, each once.
+// Returns the least accurate, the baseline's and the best of the available values, each once.
 std::vector<const SweepPoint*> levels_of(const SweepPlan& plan, const SweptKnob& swept) {
   std::vector<const SweepPoint*> there, levels;
   for (std::size_t i = 0; i < swept.count; ++i)
@@ -79,7 +79,7 @@ bool is_planned(const SweepPlan& plan, const Configuration& configuration) {
   return std::any_of(plan.points.begin(), plan.points.end(), is_same);
 }
 
-// The baseline with those of the settings that the knobs turn.
+// Returns the baseline with the settings that the knobs control taken from `settings`.
 SweepPoint several(const Configuration& baseline, const Settings& settings, const std::vector<const Knob*>& knobs) {
   Configuration wanted = baseline;
   wanted.settings = settings;
@@ -94,7 +94,7 @@ SweepPoint several(const Configuration& baseline, const Settings& settings, cons
   return point;
 }
 
-// The settings, unless they are too dear, not available or already there.
+// Adds the settings unless they are too expensive, unavailable or already present.
 void add_settings(const Settings& settings, const std::vector<const Knob*>& knobs,
                   const std::function<Status(const Settings&)>& can_be_had, double price_limit, SweepPlan* plan) {
   SweepPoint point = several(plan->points[0].configuration, settings, knobs);
@@ -102,11 +102,11 @@ void add_settings(const Settings& settings, const std::vector<const Knob*>& knob
   if (wanted_too && !is_planned(*plan, point.configuration)) plan->points.push_back(point);
 }
 
-// Rays through a pixel in comparisons of methods, since smooth edges count as much as indirect light does.
+// Rays per pixel in comparisons of methods, since smooth edges count as much as indirect light.
 constexpr std::uint32_t kMethodSamples = 4;
 
-// Each method of indirect light with every combination of the settings that are its own, with the baseline's samples
-// and with kMethodSamples.
+// Adds each method of indirect light with every combination of its own settings, at the baseline's samples and at
+// kMethodSamples.
 void add_methods(const std::function<Status(const Settings&)>& can_be_had, double price_limit,
                  const std::function<EffectMask(const Settings&)>& effects_with, SweepPlan* plan) {
   const Settings baseline = plan->points[0].configuration.settings;

@@ -13,10 +13,10 @@ struct SweepPoint {
   std::string knob, value;  // as in `Measured`
   Configuration configuration;
   double price = 1;         // rough frame time relative to the baseline
-  std::string missing;      // why it is not available; empty: measure it
+  std::string missing;      // why it is unavailable; empty: measure it
   bool is_default = false;  // equals the baseline, which is measured instead
-  bool is_choice = true;    // can be chosen between frames on the baseline's screen, so may be part of the front
-  std::string indirect;     // the method of indirect light it has, "none" without one; empty: not known
+  bool is_choice = true;    // can be chosen between frames on the baseline's screen, so it may join the front
+  std::string indirect;     // method of indirect light, "none" without one; empty: unknown
 };
 
 // The points of a knob: first … first + count - 1.
@@ -28,10 +28,10 @@ struct SweptKnob {
 struct SweepPlan {
   std::vector<SweepPoint> points;  // the baseline first, then knob by knob, then the covering set
   std::vector<SweptKnob> knobs;
-  std::vector<std::string> notes;  // skipped knobs and why; pairs the covering set does not cover
+  std::vector<std::string> notes;  // skipped knobs and why; pairs that the covering set omits
 };
 
-// `can_be_had` fails if settings are not available in the scene. `price_limit`: largest frame time of combinations,
+// `can_be_had` fails if settings are not available in the scene. `price_limit`: maximum frame time of combinations,
 // relative to the baseline. `ladder`: settings to measure besides the covering set. `effects_with`: the scene's effects
 // with other settings; without it, methods of indirect light are not compared.
 SweepPlan plan_sweep(const std::string& scene, const EffectPlan& effects, const Configuration& baseline,

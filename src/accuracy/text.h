@@ -14,7 +14,7 @@ std::string escaped(const std::string& text);
 
 std::string base64(const std::string& bytes);
 
-// Makes a file name: keeps letters, digits and '-'; '_' replaces each other byte.
+// Makes a file name: keeps letters, digits and '-', replaces every other byte by '_'.
 std::string file_word(const std::string& text);
 
 }  // namespace pocketray

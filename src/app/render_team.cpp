@@ -46,7 +46,7 @@ Status FrameLead::serve_one(double seconds, bool* there) {
   if (message.bytes[0] == kReady) {
     helper.is_ready = true;
     if (reader.text() == identity_) return success();
-    return failure("rank %u: its scene or program is not that of rank 0: give all machines the same files",
+    return failure("rank %u: its scene or program differs from rank 0's: give all machines the same files",
                    message.from);
   }
   CHECK_EQ(static_cast<int>(message.bytes[0]), static_cast<int>(kFrame));

@@ -19,9 +19,9 @@ namespace {
 // Factors by which prices may be wrong. Chosen: twice what builtin_front() claims for the ladder's guesses; for prices
 // measured on another machine and on this one, so that a trial corrects them.
 constexpr double kGuessDoubt = 4, kElsewhereDoubt = 1.5, kMeasuredDoubt = 1.25;
-constexpr double kPriceTolerance = 1.2;  // of learnt prices that are not written back; chosen: within kMeasuredDoubt
+constexpr double kPriceTolerance = 1.2;  // of learnt prices not written back; chosen: within kMeasuredDoubt
 
-// Drops candidates with a larger error than allowed, and of the others all but the fastest, if that is wanted.
+// Drops candidates that exceed the allowed error and, if requested, all remaining ones except the fastest.
 Status bound_error(const FrontSource& source, Front* front) {
   if (source.flip_max == 0) return success();
   if (!errors_known(*front))
@@ -47,7 +47,7 @@ Status bound_error(const FrontSource& source, Front* front) {
   return success();
 }
 
-// The scene's front: from the named file, else from the cache, else the ladder.
+// Loads the scene's front: from the named file, otherwise from the cache, otherwise the ladder.
 Status load_front(const Renderer& renderer, const FrontSource& source, const ContentHash* identity, OpenFront* f) {
   bool there;
   if (!source.file.empty()) {
@@ -83,8 +83,8 @@ Status load_front(const Renderer& renderer, const FrontSource& source, const Con
 
 constexpr IndirectChoice kInstantRadiosity = indirect_choice(Effect::instant_radiosity);
 
-// Plans with virtual lights, gradients of stored light, for undersampling and source selection, if a candidate has
-// them, and the most points per area light that fit; drops candidates that need more.
+// Plans for virtual lights, gradients of stored light, undersampling and source selection if a candidate uses them, and
+// for the most points per area light that fit; drops candidates that need more.
 Status plan_front(Renderer* renderer, const SceneStorage& storage, const OutputNeed& output, const FrontSource& source,
                   const ContentHash* identity, OpenFront* f) {
   renderer->settings.points_per_area_light = 1;
@@ -343,7 +343,7 @@ void print_budget(const Budget& budget, bool last_alone) {
   std::printf("  %.1f %% of %u frame%s within 110 %%, median %.1f ms, longest %.1f ms; %u change%s of settings\n",
               100.0 * (budget.frames - budget.late) / budget.frames, budget.frames, budget.frames == 1 ? "" : "s",
               range.median, range.max, g.switch_count, g.switch_count == 1 ? "" : "s");
-  if (budget_too_small(g)) std::printf("  even the fastest settings of the front exceed the budget\n");
+  if (budget_too_small(g)) std::printf("  even the front's fastest settings exceed the budget\n");
 }
 
 }  // namespace pocketray

@@ -1,5 +1,5 @@
-// A time budget for frames: opens a scene with memory for its front, picks settings frame by frame and saves the prices
-// it measured.
+// A time budget for frames: opens a scene with memory for its front, picks settings frame by frame and saves the
+// measured prices.
 #pragma once
 #include <string>
 #include <vector>
@@ -17,10 +17,10 @@ constexpr double kBudgetMsMin = 0.001, kBudgetMsMax = 1e7;
 
 struct BudgetOptions {
   double ms = 0;        // per frame; 0: none given
-  double flip_max = 0;  // mean ꟻLIP that settings may have, as measured; 0: any
-  std::string front;    // a file; empty: the scene's in the cache
+  double flip_max = 0;  // maximum measured mean ꟻLIP of the settings; 0: any
+  std::string front;    // a file; empty: the scene's front in the cache
 };
-// Whether settings are chosen from a front: the least error within the time, or the fastest within the error alone.
+// Returns whether a front provides the settings: the least error within the time, or the fastest within the error.
 inline bool chooses_settings(const BudgetOptions& options) { return options.ms > 0 || options.flip_max > 0; }
 Status check_budget_options(const BudgetOptions& options);
 inline const char* option_that_chooses(const BudgetOptions& o) { return o.ms > 0 ? "--budget-ms" : "--flip-max"; }
@@ -28,13 +28,13 @@ inline const char* option_that_chooses(const BudgetOptions& o) { return o.ms > 0
 // The settings to choose from for an open scene.
 struct OpenFront {
   Front front;
-  Candidate best;           // the most accurate before --flip-max left some out
-  Front measured;           // the prices measured on this machine
-  Front file;               // if is_whole: all contents of the file
+  Candidate best;           // the most accurate, before --flip-max excluded any
+  Front measured;           // prices measured on this machine
+  Front file;               // if is_whole: the whole contents of the file
   EffectMask effects = 0;   // effects that are on; candidates that differ only in others are equal here
   std::string scene, path;  // where prices are saved; empty: nowhere
   bool is_whole = false;    // the file holds the whole front, not only prices
-  bool is_guess = false;    // nothing measured yet: prices are those of the ladder
+  bool is_guess = false;    // nothing measured yet: prices are the ladder's
   bool is_priced = false;   // some prices come from `measured`
   std::vector<std::string> notes;
 };
@@ -44,7 +44,7 @@ struct FrontSource {
   std::string file;         // empty: the cache
   bool may_be_new = false;  // the file need not exist yet
   double flip_max = 0;      // drops candidates with a larger error; 0: none
-  bool fastest = false;     // keeps the fastest alone
+  bool fastest = false;     // keeps only the fastest
 };
 inline FrontSource front_source(const BudgetOptions& o) { return {o.front, false, o.flip_max, o.ms == 0}; }
 // Opens the scene, ready for rendering, with memory for the most expensive candidate. Drops candidates that do not fit,
@@ -52,10 +52,10 @@ inline FrontSource front_source(const BudgetOptions& o) { return {o.front, false
 Status open_scene_with_front(const CommonOptions& common, const FrontSource& source,
                              const std::function<std::size_t(const Settings&)>& output_bytes, OpenScene* opened,
                              OpenFront* front);
-// The whole front with the prices of `priced`. Keeps every candidate, even those this scene ignores or this memory
-// cannot hold; prices missing in `priced` are scaled along with the others.
+// Returns the whole front with the prices of `priced`. Keeps every candidate, even those that this scene ignores or
+// this memory cannot hold; prices missing in `priced` are scaled along with the others.
 Front with_prices(const OpenFront& front, const Front& priced);
-// Saves the measured prices: in the front's file if that is whole, otherwise as this machine's prices.
+// Saves the measured prices: in the front's file if it holds the whole front, otherwise as this machine's prices.
 Status keep_measured(const OpenFront& front, const Front& measured);
 
 struct Budget {
@@ -70,20 +70,20 @@ struct Budget {
   std::vector<double> frame_ms;  // of the first frames, up to the reserved count
 };
 
-// Call with the scene open. Records the times of the first `frame_count` frames.
+// Call once the scene is open. Records the times of the first `frame_count` frames.
 void start_budget(const BudgetOptions& options, const OpenFront& front, const Renderer& renderer,
                   std::size_t frame_count, Budget* budget);
 // Call before a frame: chooses settings and applies them to the renderer. Allocates nothing.
 Status begin_budget_frame(Budget* budget, Renderer* renderer);
-// Moves `steps` candidates along the front, positive being more accurate, and pins that candidate whatever frames take;
-// 0 hands the choice back to the budget.
+// Moves `steps` candidates along the front, positive meaning more accurate, and pins that candidate whatever its frame
+// times; 0 returns the choice to the budget.
 void move_along_front(Budget* budget, int steps);
 // Call after a frame. `ns`: time from the frame's preparation until its pixels are packed.
 void end_budget_frame(Budget* budget, std::uint64_t ns);
-// Saves prices that were missing or wrong by more than a fifth; prints a note on stderr if it cannot.
+// Saves prices that were missing or wrong by more than a fifth; prints a note on stderr on failure.
 void finish_budget(const Budget& budget);
 
-// The current settings and what they trade, for the overlay. Allocates nothing.
+// Writes the current settings and what they trade, for the overlay. Allocates nothing.
 void write_budget_lines(const Budget& budget, HudText* text);
 // Prints the settings chosen for most frames, or for the last one, what they trade against the most accurate, and the
 // expected error.

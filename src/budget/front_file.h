@@ -1,4 +1,4 @@
-// Front files: per scene its candidates with their errors, which hold on every machine; per scene and machine the
+// Front files: per scene, its candidates with their errors, which hold on every machine; per scene and machine, the
 // prices measured there.
 #pragma once
 #include <string>
@@ -8,18 +8,18 @@
 
 namespace pocketray {
 
-// Path of a scene's front or, if a machine is named, of the scene's prices on it, in its cache_folder(); empty without
-// one. `scene` as on the command line.
+// Path of a scene's front or, if a machine is named, of the scene's prices on it, in its cache_folder(); empty if there
+// is none. `scene` as on the command line.
 std::string front_path(const std::string& scene, const ContentHash& identity, const std::string& machine = "");
-// Name of the machine in price files: device and threads if emulated ("tablet-1"), else instruction set and threads
-// ("avx512-2").
+// Name of the machine in price files: device and threads if emulated ("tablet-1"), otherwise instruction set and
+// threads ("avx512-2").
 std::string machine_name(const char* emulated, std::uint32_t thread_count);
 
-// Without such a file, succeeds with *there false and *front empty.
+// If there is no such file, succeeds with *there false and *front empty.
 Status read_front(const std::string& path, Front* front, bool* there);
 // Replaces the file atomically.
 Status write_front(const std::string& path, const Front& front);
-// Creates the folder of a front_path() if missing, then write_front().
+// Creates the folder of a front_path() if missing, then calls write_front().
 Status cache_front(const std::string& path, const Front& front);
 
 }  // namespace pocketray

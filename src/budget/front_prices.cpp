@@ -12,8 +12,8 @@ namespace {
 
 // Chosen: a candidate that takes longer suits no budget.
 constexpr double kFrameNsMax = 2e9;
-// Samples several times of an animation. Chosen: a sixth of a second at 30 frames per second; neighbours would show the
-// same.
+// Samples several times of an animation. Chosen: a sixth of a second at 30 frames per second; adjacent frames would
+// look alike.
 constexpr std::uint32_t kFramesBetweenRounds = 5;
 
 // Times a frame as render and view do.
@@ -92,7 +92,7 @@ Front measured_front(const Front& front, FrontPrices* p) {
     measured.candidates[measured.count++] = c;
   }
   CHECK_LE(measured.count, front.count);
-  sort_by_price(&measured);  // keeps dominated candidates: their prices are known all the same
+  sort_by_price(&measured);  // keeps dominated candidates: their prices are known, too
   return measured;
 }
 

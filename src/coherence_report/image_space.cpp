@@ -23,7 +23,7 @@ PixelList union_of(const PixelList& one, const PixelList& other) {
   return both;
 }
 
-// Adds the neighbours that are not listed yet.
+// Adds the neighbours that are not yet listed.
 void add_neighbours(std::uint32_t pixel, std::uint32_t width, std::uint32_t height, std::vector<bool>* listed,
                     PixelList* pixels) {
   const std::uint32_t column = pixel % width, row = pixel / width;
@@ -36,7 +36,7 @@ void add_neighbours(std::uint32_t pixel, std::uint32_t width, std::uint32_t heig
     }
 }
 
-// An interval of time, and the pixels that can differ at its ends.
+// A time interval, and the pixels that can differ at its ends.
 struct Interval {
   std::size_t begin, end;
   PixelList pixels;

@@ -59,7 +59,7 @@ struct ErrorSeries {
   std::vector<ErrorRow> rows;
 };
 
-// Ours, then the ways of each method.
+// Ours, then the variants of each method.
 std::vector<ErrorSeries> series_of(const CoherenceReport& report) {
   const std::vector<ErrorRow> rows = error_rows(report);
   std::vector<ErrorSeries> all = {
@@ -75,7 +75,7 @@ std::string label_of(const ImageSpaceWay& way) {
 
 const char* color_of(ImageSpaceMethod method) { return kPlotColors[method == ImageSpaceMethod::badt ? 1 : 2]; }
 
-// Labels of the ways beside their points.
+// Labels for the variants beside their points.
 std::string label_commands(const CoherenceReport& report, const Axis& x, const Axis& y, double ErrorRow::*work,
                            double ErrorRow::*error) {
   const std::vector<ErrorRow> rows = error_rows(report);

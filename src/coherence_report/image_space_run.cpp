@@ -15,16 +15,16 @@ namespace {
 constexpr OutputFormat kShown = {"rgb888", kRgb888, false};
 constexpr std::uint64_t kSeed = 1988;
 
-// Traces pixels of frames by a renderer, posed anew where the frame is another.
+// Traces pixels of frames with a renderer, posed again whenever the frame changes.
 struct PixelTracer {
   Renderer* renderer;
   bool posed = false;
-  std::uint32_t frame = 0;  // that it is posed for
-  std::uint64_t rays = 0;   // of all frames before
+  std::uint32_t frame = 0;  // the frame that it is posed for
+  std::uint64_t rays = 0;   // of all previous frames
   std::vector<Span> spans;
 };
 
-// Pixels as spans, each a run of a row.
+// Converts pixels to spans, each a run of a row.
 void list_spans(const PixelList& pixels, std::uint32_t width, std::vector<Span>* spans) {
   spans->clear();
   for (std::size_t i = 0, end; i < pixels.size(); i = end) {
@@ -54,7 +54,7 @@ Status trace_pixels(PixelTracer* tracer, std::uint32_t frame, const PixelList& p
   return success();
 }
 
-// Images of a group: the last frame of the group before, then its own frames.
+// Images of a group: the previous group's last frame, then its own frames.
 using Group = std::vector<FrameImage>;
 
 struct WayState {
@@ -115,7 +115,7 @@ Status run_whole(Renderer* renderer, std::uint32_t frame, FrameImage* image, Ren
   return success();
 }
 
-// The first frame, which each way traces whole.
+// Begins with the first frame, which each variant traces whole.
 void begin_ways(const FrameImage& first, const RenderCost& cost, ImageSpaceRun* run, std::vector<WayState>* states) {
   for (const ImageSpaceWay& way : kImageSpaceWays) {
     run->ways.push_back({way, cost, first.size(), {}});

@@ -1,4 +1,4 @@
-// A sequence by the image-space methods, what it costs and how wrong it is, beside whole frames.
+// Runs a sequence with the image-space methods, and measures their cost and errors against whole frames.
 #pragma once
 #include <string>
 #include <vector>
@@ -12,7 +12,7 @@ namespace pocketray {
 
 enum class ImageSpaceMethod { badt, chapman };
 
-// Badt's share of the pixels, 1 / parameter, or Chapman's frames from one that is traced to the next.
+// Badt's fraction of the pixels, 1 / parameter, or Chapman's distance in frames between traced frames.
 struct ImageSpaceWay {
   ImageSpaceMethod method;
   std::uint32_t parameter;
@@ -22,13 +22,13 @@ constexpr ImageSpaceWay kImageSpaceWays[] = {
     {ImageSpaceMethod::badt, 32},   {ImageSpaceMethod::badt, 64},   {ImageSpaceMethod::chapman, 2},
     {ImageSpaceMethod::chapman, 4}, {ImageSpaceMethod::chapman, 8}, {ImageSpaceMethod::chapman, 16}};
 
-// How far pictures are from whole frames.
+// Differences of pictures from whole frames.
 struct ImageSpaceErrors {
   std::uint64_t wrong = 0;        // pixels that differ in any bit of radiance ...
   std::uint64_t wrong_shown = 0;  // ... and in the bytes that a screen of RGB888 shows
   std::uint64_t wrong_most = 0;   // of `wrong`, in one frame
-  double flip_sum = 0;            // means of each frame
-  double flip_max = 0;            // of any pixel
+  double flip_sum = 0;            // of each frame's mean
+  double flip_max = 0;            // maximum of any pixel
 };
 
 struct ImageSpaceFigures {
@@ -46,17 +46,17 @@ struct ImageSpaceRun {
   std::vector<ImageSpaceFigures> ways;
 };
 
-// Frames are rendered in groups. Every way traces the first frame whole, and Chapman the last one.
+// Frames are rendered in groups. Every variant traces the first frame whole, Chapman also the last one.
 constexpr std::uint32_t kGroupFrames = 16;
 
-// Compares one frame with the whole frame, as shown at that exposure, and adds to the errors.
+// Compares a frame with the whole frame, as shown at that exposure, and adds to the errors.
 void add_errors(const FrameImage& whole, const FrameImage& image, std::uint32_t width, std::uint32_t height,
                 float exposure, ImageSpaceErrors* errors);
 
 // Number of steps of progress.
 std::uint64_t image_space_step_count(const FrameRange& range);
 
-// The renderer must be built without coherence, and trace each pixel on its own. Keeps finished groups of frames after
+// The renderer must be built without coherence and trace each pixel on its own. Keeps finished groups of frames after
 // an interrupt.
 Status run_image_space(Renderer* renderer, const FrameRange& range, Progress* progress, ImageSpaceRun* run);
 

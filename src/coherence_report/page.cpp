@@ -102,7 +102,7 @@ std::string image_space_of(const CoherenceReport& report, const ReportPictures& 
 std::string page_of(const CoherenceReport& report, const ReportPictures& pictures) {
   const SequenceRun& run = report.ours;
   std::string title =
-      "The saving by retracing only what changed: " + escaped(report.scene.substr(report.scene.rfind('/') + 1));
+      "Savings from retracing only what changed: " + escaped(report.scene.substr(report.scene.rfind('/') + 1));
   std::string text =
       page_begin(title) + "<header>\n<div>\n<h1>" + title + "</h1>\n<p class=\"soft\">" + escaped(report.scene) +
       format(", %u × %u pixels, ", run.width, run.height) + escaped(report.machine) +
@@ -114,11 +114,12 @@ std::string page_of(const CoherenceReport& report, const ReportPictures& picture
     text += "<h2>The paper’s way</h2>\n<p>T" + escaped(papers_way_text(report.settings).substr(1)) + ".</p>\n" +
             table_of(report.papers_way, report.is_papers_scene) + notes_of(report.papers_way);
   return text + tables_of(report.tables, pictures) + image_space_of(report, pictures) + retraced_of(pictures) +
-         "<h2>Method</h2>\n<p class=\"soft\">Two renderers, each in its own memory, render the sequence, one of "
-         "them whole frames, the other only what may have changed since its last frame; they take turns after a few "
+         "<h2>Method</h2>\n<p class=\"soft\">Two renderers, each in its own memory, render the sequence, one "
+         "as whole frames, the other only what may have changed since its last frame; they take turns every few "
          "frames. Times "
-         "cover posing, refitting, placing lights, the search for changes and tracing. Rays are of all kinds, those of "
-         "the search included if they pass through the whole scene. frames.csv has every frame, report.json every "
+         "cover posing, refitting, placing lights, the search for changes and tracing. Rays are of all kinds, "
+         "including those of the search that pass through the whole scene. frames.csv has every frame, report.json "
+         "every "
          "figure.</p>\n" +
          kPageEnd;
 }

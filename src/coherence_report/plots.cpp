@@ -39,7 +39,7 @@ std::string line_style(int color, double width) {
   return format("lines lw %.1f lc rgb '%s'", width, kPlotColors[color]);
 }
 
-// Adds every point as a dot and, as a line, the medians of a few neighbours: times vary.
+// Adds every point as a dot and, as a line, medians of a few neighbours: times vary.
 void add_smoothed(const RatioSeries& series, int color, std::vector<RatioSeries>* all) {
   constexpr std::size_t kReach = 4;  // neighbours on each side
   const std::size_t count = series.points.size();

@@ -1,11 +1,11 @@
-// Plots of what coherence saves, frame by frame.
+// Plots of the savings of coherence, frame by frame.
 #pragma once
 #include "accuracy/plot_script.h"
 #include "coherence_report/report.h"
 
 namespace pocketray {
 
-// Ratios to frames traced whole: rays and pixels, and what changed; time. Both ways and the paper's table, as far as
+// Ratios to whole frames: rays and pixels, with those that changed; time. Both ways and the paper's table, as far as
 // the report has them.
 Plot rays_plot(const CoherenceReport& report);
 Plot time_plot(const CoherenceReport& report);

@@ -1,4 +1,4 @@
-// What rendering spends.
+// Cost of rendering.
 #pragma once
 #include <ctime>
 
@@ -7,7 +7,7 @@
 namespace pocketray {
 
 struct RenderCost {
-  std::uint64_t rays = 0;  // of all kinds through the whole scene; shadow rays that look for changes included
+  std::uint64_t rays = 0;  // of all kinds through the whole scene, including shadow rays that look for changes
   double ms = 0;           // from posing the scene to the last pixel
   double cpu_ms = 0;       // of all threads
 };

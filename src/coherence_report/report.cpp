@@ -52,7 +52,7 @@ void print_changes(const SequenceRun& run) {
     std::printf("\n");
   }
   if (f.moving_rays > 0)
-    std::printf("  to find them: %s rays against the moving geometry alone, not counted above\n",
+    std::printf("  finding them: %s rays against the moving geometry alone, not counted above\n",
                 grouped(f.moving_rays).c_str());
 }
 
@@ -91,7 +91,7 @@ Json figures_json(const FrameFigures& f, std::uint64_t pixels) {
           {"retraced", f.retraced}};
 }
 
-// Ratios of the entire sequence, then what they are made of.
+// Ratios of the entire sequence, then their components.
 Json way_json(const SequenceRun& run) {
   if (run.frames.empty()) return Json();
   const std::size_t count = run.frames.size();

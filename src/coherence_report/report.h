@@ -1,4 +1,4 @@
-// A report of coherence: for people, as JSON and as CSV.
+// A coherence report: for people, as JSON and as CSV.
 #pragma once
 #include <string>
 
@@ -12,8 +12,8 @@ struct CoherenceReport {
   Settings settings;
   bool is_papers_scene = false;
   SequenceRun ours;
-  SequenceRun papers_way;     // without frames: not rendered
-  ImageSpaceRun image_space;  // without frames: not asked for
+  SequenceRun papers_way;     // no frames: not rendered
+  ImageSpaceRun image_space;  // no frames: not requested
   TableSweep tables;
 };
 
@@ -30,23 +30,23 @@ constexpr PaperRatio kPaperEntire = {351, 0.1935, 0.2672};  // of 351 frames
 struct TableRow {
   std::string name;  // "75"
   FrameFigures figures;
-  std::uint64_t pixels = 0;           // of the frames
+  std::uint64_t pixels = 0;           // total of the frames
   const PaperRatio* paper = nullptr;  // null: not the paper's scene, or not its sequence
 };
 std::vector<TableRow> table_rows(const SequenceRun& run, bool is_papers_scene);
 
-// Describes the two runs of a way.
+// Describes the paper's way and how it is compared.
 std::string papers_way_text(const Settings& settings);
 constexpr char kPaperText[] =
     "Jevans 1992, Table 2: its sequence at 640 x 480 on its machine. It counts a ray for each pixel traced, so compare "
     "its rays with the pixels.";
 
-// "frame 0: there is no last frame"; a line for each run of frames with the same reason.
+// "frame 0: there is no last frame"; one line for each run of frames with a common reason.
 std::vector<std::string> whole_frames(const SequenceRun& run);
 
 void print_report(const CoherenceReport& report);
 Json report_json(const CoherenceReport& report);
-// A header line, then a line per frame.
+// A header line, then one line per frame.
 std::string frames_csv(const SequenceRun& run);
 
 }  // namespace pocketray

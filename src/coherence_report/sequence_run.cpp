@@ -13,12 +13,12 @@
 namespace pocketray {
 namespace {
 
-// Each renderer renders some frames in a row, as it would alone: taking turns every frame, each would find its data
-// gone from the caches, which slows short frames the most.
+// Each renderer renders some frames in a row, as it would alone: if they took turns every frame, each would find its
+// data evicted from the caches, which slows short frames the most.
 constexpr std::size_t kBatchFrames = 16, kBatchBytes = 64u << 20;
 
 struct Batch {
-  std::size_t frame_count = 0;        // at most
+  std::size_t frame_count = 0;        // maximum
   std::vector<Vec3> whole, coherent;  // frames in a row
   std::vector<Vec3> last;             // the frame before the batch
   std::vector<FrameFigures> figures;
@@ -64,12 +64,12 @@ Status check_equal(const Vec3* whole, const Vec3* coherent, const SequenceRun& r
   while (std::memcmp(&whole[pixel], &coherent[pixel], sizeof(Vec3)) == 0) ++pixel;
   CHECK_LT(pixel, pixels);
   return failure(
-      "frame %u differs at column %zu, row %zu: traced coherently it is not the frame traced whole; this is a "
+      "frame %u differs at column %zu, row %zu: the coherent frame is not the whole frame; this is a "
       "bug in pocketray: please report it",
       frame, pixel % run.width, pixel / run.width);
 }
 
-// Counts what differs from the last frame. Leaves the frame as shown in last_shown.
+// Counts differences from the last frame. Leaves the frame as shown in last_shown.
 void count_changes(const Vec3* image, const Vec3* last, float exposure, const SequenceRun& run, Batch* batch,
                    FrameFigures* figures) {
   const int width = static_cast<int>(run.width), height = static_cast<int>(run.height);
@@ -95,7 +95,7 @@ RetracedPicture* picture_of(std::uint32_t frame, SequenceRun* run) {
   return nullptr;
 }
 
-// The renderer's last frame: white where it was retraced. Colours follow when the frame has been packed.
+// Draws the renderer's last frame: white where it was retraced. Colours follow once the frame is packed.
 void mark_picture(const Renderer& renderer, RetracedPicture* picture) {
   const Settings& settings = renderer.settings;
   CHECK_EQ(picture->rgb.size(), std::size_t(3) * settings.width * settings.height);
@@ -108,8 +108,8 @@ void color_picture(const std::vector<std::uint8_t>& shown, RetracedPicture* pict
   for (std::size_t i = 0; i < shown.size(); ++i) picture->rgb[i] &= shown[i];
 }
 
-// Renders `frame_count` frames from `first` on, all of them whole and then all of them coherently; *finished: those
-// that were rendered in both ways.
+// Renders `frame_count` frames from `first` on, first all whole and then all coherently; *finished: number rendered in
+// both ways.
 Status render_batch(const CoherencePair& pair, std::uint32_t first, std::size_t frame_count, std::uint64_t done,
                     Progress* progress, Batch* batch, SequenceRun* run, std::size_t* finished) {
   CHECK(frame_count >= 1 && frame_count <= batch->frame_count);
@@ -178,7 +178,7 @@ void make_room(const CoherencePair& pair, const FrameRange& range, Batch* batch,
   batch->shown.resize(3 * pixels), batch->last_shown.resize(3 * pixels);
 }
 
-// So that no measured frame pays for the first touch of memory.
+// Warms up, so that no measured frame pays for the first touch of memory.
 Status warm_up(const CoherencePair& pair, std::uint32_t frame, bool* complete) {
   const double seconds = seconds_of(*pair.whole, frame);
   FrameFigures ignored;

@@ -1,4 +1,4 @@
-// A sequence rendered twice, frame by frame and coherently, with what the second saved. Every frame is compared.
+// A sequence rendered twice, frame by frame and coherently, with what the second way saved. Every frame is compared.
 #pragma once
 #include <vector>
 
@@ -8,13 +8,13 @@
 
 namespace pocketray {
 
-// Two renderers of one scene with the same settings, built, each in its own memory.
+// Two renderers of one scene with equal settings, built, each in its own memory.
 struct CoherencePair {
   Renderer* whole = nullptr;     // renders frame by frame
   Renderer* coherent = nullptr;  // planned with CoherenceMode::on
 };
 
-// Where a coherent frame's time goes; tracing and lighting take the rest.
+// Time of a coherent frame's steps; tracing and lighting take the rest.
 struct CoherentSteps {
   double pose_ms = 0, refit_ms = 0, follow_ms = 0, find_ms = 0, keep_ms = 0;
 };
@@ -23,15 +23,15 @@ struct FrameFigures {
   std::uint32_t frame = 0;
   RenderCost whole, coherent;
   CoherentSteps steps;
-  std::uint64_t moving_rays = 0;  // that look for changes, against the moving geometry alone; not in the cost's rays
-  // Pixels that differ from the last frame: in any bit of radiance; in the bytes that a screen of RGB888 shows. The
-  // first frame differs everywhere.
+  std::uint64_t moving_rays = 0;  // search for changes, against the moving geometry alone; not in the cost's rays
+  // Pixels that differ from the last frame: in any bit of radiance; in the bytes that an RGB888 screen shows. The first
+  // frame differs everywhere.
   std::uint64_t changed = 0, shown = 0;
   std::uint64_t retraced = 0;
   const char* whole_because = nullptr;  // null: only what may have changed was traced
 };
 
-// The levels of a frame's retraced pixels, the others black [Jevans92, fig. 4].
+// Levels of a frame's retraced pixels, the others black [Jevans92, fig. 4].
 struct RetracedPicture {
   std::uint32_t frame = 0;
   std::vector<std::uint8_t> rgb;
@@ -40,12 +40,12 @@ struct RetracedPicture {
 struct SequenceRun {
   FrameRange range;
   std::vector<FrameFigures> frames;       // finished ones
-  std::vector<RetracedPicture> pictures;  // of those
+  std::vector<RetracedPicture> pictures;  // of those frames
   std::uint32_t width = 0, height = 0;
-  std::size_t table_bytes = 0, coherence_bytes = 0;  // the tables of voxels, and all that coherence keeps
+  std::size_t table_bytes = 0, coherence_bytes = 0;  // the voxels' tables; everything that coherence keeps
 };
 
-// The frames of the paper's table and of its figure.
+// Frames of the paper's table and of its figure.
 constexpr std::uint32_t kTableFrames[] = {0, 1, 75, 150, 200, 350};
 constexpr std::uint32_t kFigureFrames[] = {0, 1, 15, 35, 40, 75, 150, 200, 350};
 
@@ -54,8 +54,8 @@ constexpr std::uint64_t rendering_count(const FrameRange& range) {
   return 2 * (std::uint64_t(range.last) - range.first + 1);
 }
 
-// Renders the range with memory sealed. If settings.coherence_by_tables, the frame-by-frame renderer traces ray by ray,
-// too. Keeps finished frames after an interrupt. Fails at the first pixel that differs. `done`: renderings before.
+// Renders the range with memory sealed. If settings.coherence_by_tables, the frame-by-frame renderer also traces ray by
+// ray. Keeps finished frames after an interrupt. Fails at the first pixel that differs. `done`: renderings before.
 Status run_sequence(const CoherencePair& pair, const FrameRange& range, Progress* progress, std::uint64_t done,
                     SequenceRun* run);
 
@@ -63,7 +63,7 @@ Status run_sequence(const CoherencePair& pair, const FrameRange& range, Progress
 FrameFigures sum_of(const SequenceRun& run, std::size_t begin, std::size_t end);
 inline FrameFigures entire(const SequenceRun& run) { return sum_of(run, 0, run.frames.size()); }
 
-// `part` of `whole`; NaN of nothing.
+// Returns part / whole; NaN if whole is 0.
 double ratio_of(double part, double whole);
 
 }  // namespace pocketray

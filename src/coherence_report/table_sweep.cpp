@@ -15,7 +15,7 @@ double rays_of(const TableSide& s) {
   return ratio_of(static_cast<double>(s.all.coherent.rays), static_cast<double>(s.all.whole.rays));
 }
 double time_of(const TableSide& s) { return ratio_of(s.all.coherent.ms, s.all.whole.ms); }
-// Of all threads; less noisy on a busy machine.
+// CPU time of all threads; less noisy on a busy machine.
 double cpu_of(const TableSide& s) { return ratio_of(s.all.coherent.cpu_ms, s.all.whole.cpu_ms); }
 double retraced_of(const TableSide& s) {
   return ratio_of(static_cast<double>(s.all.retraced), static_cast<double>(s.pixels));
@@ -39,7 +39,7 @@ TableSide table_side(std::uint32_t side, const SequenceRun& run) {
 }
 
 std::string table_sweep_text(const TableSweep& sweep) {
-  return sweep.papers_way ? "tables hold all rays, as in the paper: the scene has none that need tables"
+  return sweep.papers_way ? "tables hold all rays, as in the paper: no rays of the scene need tables"
                           : "tables hold the rays behind mirrors, glass and blended surfaces";
 }
 

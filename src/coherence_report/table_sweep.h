@@ -1,7 +1,7 @@
-// The side of the tables of rays against memory, time and pixels traced. It is no row of setting_list.h: each of those
-// trades accuracy for time, may differ from frame to frame in the memory that is planned, and is chosen by its error.
-// The side changes what memory is planned, and no picture. `accuracy` renders one moment again and again, for which no
-// tables are kept; so it is swept here, over a sequence.
+// Sweeps the side of the ray tables against memory, time and pixels traced. It has no row in setting_list.h: each of
+// those settings trades accuracy for time, may differ from frame to frame within the planned memory, and is chosen by
+// its error. The side changes the planned memory, and no picture. `accuracy` renders one moment repeatedly, for which
+// no tables are kept; so the side is swept here, over a sequence.
 #pragma once
 #include "accuracy/plot_script.h"
 #include "coherence_report/sequence_run.h"
@@ -18,19 +18,19 @@ struct TableSide {
   FrameFigures all;
 };
 struct TableSweep {
-  bool papers_way = false;       // all rays in tables, because the scene has none that need them
-  std::vector<TableSide> sides;  // empty: not asked for
+  bool papers_way = false;       // all rays in tables, because none of the scene's need them
+  std::vector<TableSide> sides;  // empty: not requested
 };
 
-// A finished sequence with tables of that side.
+// Returns the figures of a finished sequence with tables of that side.
 TableSide table_side(std::uint32_t side, const SequenceRun& run);
 
 void print_table_sweep(const TableSweep& sweep);
 Json table_sweep_json(const TableSweep& sweep);
 std::string table_sweep_csv(const TableSweep& sweep);
 std::string table_sweep_markup(const TableSweep& sweep);
-std::string table_sweep_text(const TableSweep& sweep);  // what the rays in the tables are
-// Pixels traced, rays and CPU time over the side, with the memory of the tables.
+std::string table_sweep_text(const TableSweep& sweep);  // the kind of rays in the tables
+// Plots pixels traced, rays and CPU time over the side, with the memory of the tables.
 Plot table_plot(const TableSweep& sweep);
 
 }  // namespace pocketray

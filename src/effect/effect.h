@@ -46,11 +46,11 @@ using EffectMask = std::uint64_t;
 constexpr EffectMask bit(Effect effect) { return EffectMask(1) << static_cast<int>(effect); }
 static_assert(kEffectCount < 64, "more effects than bits of a mask take a wider one, on the wire too");
 constexpr EffectMask kAllEffects = bit(static_cast<Effect>(kEffectCount)) - 1;
-// Methods of indirect light: a plan has one of them or none; --indirect chooses.
+// Methods of indirect light: a plan has at most one; --indirect chooses it.
 constexpr EffectMask kIndirectEffects = bit(Effect::ambient) | bit(Effect::radiosity) | bit(Effect::instant_radiosity);
 
-// The effects compiled into this build. tests/absence builds the core without those that a scene does not need, to
-// prove that an absent effect costs nothing in a full build.
+// Effects compiled into this build. tests/absence builds the core without those that a scene does not need, to prove
+// that an absent effect costs nothing in a full build.
 #ifdef POCKETRAY_EFFECTS_BUILT
 constexpr EffectMask kEffectsBuilt = POCKETRAY_EFFECTS_BUILT;
 #else

@@ -1,4 +1,4 @@
-// effect_entered<E>(): every effect's code calls it on entry. It compiles to nothing in the product. The build that
+// effect_entered<E>(): called on entry by every effect's code. Compiles to nothing in the product. The build that
 // proves the plan (POCKETRAY_PROBE_EFFECTS) counts entries and traps if the plan says that the effect is absent.
 #pragma once
 #include "effect/effect.h"
@@ -15,7 +15,7 @@ struct EffectProbe {
   std::atomic<EffectMask> allowed{kAllEffects};
   std::atomic<std::uint64_t> entries[kEffectCount];
 };
-inline EffectProbe effect_probe;  // zero-initialised, no constructor runs
+inline EffectProbe effect_probe;  // zero-initialised; no constructor runs
 
 template <Effect effect>
 inline void effect_entered() {

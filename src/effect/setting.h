@@ -11,15 +11,15 @@ namespace pocketray {
 
 enum class SettingKind : std::uint8_t { count, real, choice };
 
-// Where a setting is stored in Quality. Values are doubles, which hold every count and float; a choice is its
+// Access to a setting's member of Quality. Values are doubles, which hold every count and float; a choice is its
 // enumerator's number.
 struct SettingField {
   SettingKind kind;
-  Quantity quantity;         // its limits; a choice has only its names
-  const char* const* names;  // of a choice, in enumerator order
+  Quantity quantity;         // provides the limits; a choice has only its names
+  const char* const* names;  // choice: in enumerator order
   int name_count;
   double (*get)(const Quality& quality);
-  void (*set)(Quality* quality, double value);  // must be within the limits
+  void (*set)(Quality* quality, double value);  // the value must be within the limits
 };
 
 template <auto member>
@@ -63,18 +63,18 @@ constexpr EffectMask kAlways = ~EffectMask(0);
 constexpr double kAsAsked = std::numeric_limits<double>::quiet_NaN();
 
 struct SettingRow {
-  const char* name;      // "samples", as in the option --samples, in fronts and in sweeps
+  const char* name;      // "samples": the name of the option --samples, and in fronts and sweeps
   const char* what;      // "rays through each pixel"
   const char* note;      // added to the option's help after `what` and the range; may be empty
-  const char* hud_name;  // as the overlay shows it; null: not shown
+  const char* hud_name;  // name in the overlay; null: not shown
   SettingField field;
-  std::uint32_t wire_bytes;       // in the settings of a request, in list order; 0: shared frames do without
-  EffectMask effects;             // effects that it belongs to; a sweep looks for them
-  EffectMask seen_with;           // if none of these is on, it changes no picture
+  std::uint32_t wire_bytes;       // size in a request's settings, in list order; 0: shared frames do not use it
+  EffectMask effects;             // effects that it controls; a sweep requires them
+  EffectMask seen_with;           // it changes pictures only with one of these
   bool places_lights;             // light points or the radiance bound depend on it
-  double exact;                   // value for a reference; kAsAsked: as requested
+  double exact;                   // value for references; kAsAsked: as requested
   SweepValues sweep;              // least accurate first
-  double (*price)(double value);  // cost of a frame up to a factor; null: hardly depends on the value
+  double (*price)(double value);  // relative cost of a frame; null: hardly depends on the value
   const char* theory;             // expected slope of RMSE over time; empty: theory predicts none
 };
 

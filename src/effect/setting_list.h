@@ -1,9 +1,9 @@
 // One row per setting that trades accuracy for time. The command line, its validation, fronts, the settings on the
 // wire, the server's reuse of a renderer, sweeps and the budget's choice are all derived from the rows: a new setting
 // is a member of Quality and a row here. The member holds the default, base/limit_list.h the limits. Settings that
-// change no picture, as Settings::coherence_table, which trades memory for time, have no row: every choice by error
-// would take the fastest, and they cannot change in the memory that is planned. `coherence-report --sweep-table` sweeps
-// it.
+// change no picture, such as Settings::coherence_table, which trades memory for time, have no row: every choice by
+// error would pick the fastest, and they cannot change within the planned memory. `coherence-report --sweep-table`
+// sweeps it.
 #pragma once
 #include "effect/effect_list.h"
 #include "effect/setting.h"
@@ -27,13 +27,13 @@ struct IndirectNames {
   }
 };
 inline constexpr IndirectNames kIndirectNames;
-// None first, the scene's own last.
+// None first, the scene's own method last.
 constexpr SweepValues indirect_sweep() {
   SweepValues sweep = {};
   for (int i = 0; i < kIndirectChoiceCount; ++i) sweep.values[sweep.count++] = (i + 1) % kIndirectChoiceCount;
   return sweep;
 }
-// The choice of a method by its effect, one of kIndirectEffects.
+// Returns the choice for a method's effect, which is one of kIndirectEffects.
 constexpr IndirectChoice indirect_choice(Effect effect) {
   const EffectMask before = kIndirectEffects & (bit(effect) - 1);
   return static_cast<IndirectChoice>(static_cast<int>(IndirectChoice::first) + __builtin_popcountll(before));
@@ -43,9 +43,9 @@ constexpr EffectMask kReflecting = bit(Effect::mirror) | bit(Effect::refraction)
 constexpr EffectMask kSpawning = kReflecting | bit(Effect::alpha_blend);
 
 inline double samples_price(double samples) { return samples; }
-// A pixel without them costs about as much as four rays.
+// Other work on a pixel costs about as much as four rays.
 inline double virtual_lights_price(double lights) { return lights + 64; }
-// The surface hides half of the directions: twice as many as virtual lights cost the same.
+// A surface hides half of the directions, so twice as many as virtual lights cost as much.
 inline double environment_shadows_price(double directions) { return directions + 128; }
 // A pixel without lights costs about as much as one point.
 inline double points_price(double points) { return points + 1; }
@@ -105,7 +105,7 @@ inline constexpr SettingRow kSettingList[] = {
      ""},
     {"texture-filter",
      "texture filtering",
-     "anisotropic: up to four places along a pixel's footprint, sharper at grazing angles",
+     "anisotropic: up to four samples along a pixel's footprint, sharper at grazing angles",
      nullptr,
      choice_field<&Quality::texture_filter>(kTextureFilterNames),
      1,
@@ -134,8 +134,8 @@ inline constexpr SettingRow kSettingList[] = {
      choice_field<&Quality::indirect>(kIndirectNames.names), 1, kIndirectEffects, kIndirectEffects, true, kAsAsked,
      indirect_sweep(), nullptr, ""},
     {"reconstruction",
-     "stored light between the places where it is stored",
-     "quadratic and cubic also smooth it on triangles",
+     "how baked radiosity is interpolated between samples",
+     "quadratic and cubic also smooth triangles",
      nullptr,
      choice_field<&Quality::reconstruction>(kReconstructionNames),
      1,
@@ -149,7 +149,7 @@ inline constexpr SettingRow kSettingList[] = {
      ""},
     {"virtual-lights",
      "virtual lights of instant radiosity",
-     "a surface seen directly takes a sixteenth of them at each pixel, one in a mirror or behind glass takes all; "
+     "each pixel samples 1/16 of them, hits in mirrors or behind glass sample all; "
      "--light-tolerance bounds the shadow rays",
      nullptr,
      count_field<&Quality::virtual_lights>(Quantity::virtual_lights),
@@ -162,8 +162,8 @@ inline constexpr SettingRow kSettingList[] = {
      virtual_lights_price,
      ""},
     {"compensation",
-     "light from nearby that instant radiosity lacks, since its virtual lights are bounded there",
-     "rays: found by a short ray through each pixel's surroundings",
+     "nearby indirect light that instant radiosity loses because its virtual lights are clamped",
+     "rays: recovered by a short ray from each pixel's surface",
      nullptr,
      choice_field<&Quality::compensation>(kCompensationNames),
      1,
@@ -175,7 +175,7 @@ inline constexpr SettingRow kSettingList[] = {
      nullptr,
      ""},
     {"selective",
-     "contrast of neighbouring pixels up to which those between are interpolated",
+     "interpolate between traced pixels whose contrast is below this",
      "0: trace every pixel; 0.2: hardly visible",
      "selective",
      real_field<&Quality::selective_contrast>(Quantity::contrast),
@@ -201,9 +201,9 @@ inline constexpr SettingRow kSettingList[] = {
      nullptr,
      ""},
     {"light-tolerance",
-     "of many lights, share of a surface's light that needs no shadow rays",
-     "the strongest lights are tested, and a ray to one of some virtual lights stands for them: a pixel traces at "
-     "most 1 + 1/(16 × tolerance) rays to these; 0: all",
+     "with many lights, fraction of a surface's light that may skip shadow tests",
+     "the strongest lights are tested, and one ray represents a group of virtual lights: a pixel traces at "
+     "most 1 + 1/(16 × tolerance) rays to these; 0: test all",
      "light tolerance",
      real_field<&Quality::light_tolerance>(Quantity::light_tolerance),
      4,
@@ -215,8 +215,8 @@ inline constexpr SettingRow kSettingList[] = {
      nullptr,
      ""},
     {"environment-shadows",
-     "directions in which the environment casts shadows",
-     "a pixel traces rays along a sixteenth of them; 0: no shadows",
+     "directions tested for the environment's shadows",
+     "each pixel traces 1/16 of them; 0: no shadows",
      nullptr,
      count_field<&Quality::environment_shadows>(Quantity::environment_shadows),
      2,
@@ -230,31 +230,31 @@ inline constexpr SettingRow kSettingList[] = {
 };
 constexpr int kSettingCount = sizeof kSettingList / sizeof kSettingList[0];
 
-// Bytes of all rows on the wire.
+// Bytes of all settings on the wire.
 constexpr std::uint32_t setting_wire_bytes() {
   std::uint32_t sum = 0;
   for (const SettingRow& row : kSettingList) sum += row.wire_bytes;
   return sum;
 }
 
-// The row of that name, or null.
+// Returns the row with that name, or null.
 const SettingRow* find_setting(const char* name);
 
-// Whether the setting may have the value; false for NaN.
+// Returns whether the value is within the setting's limits; false for NaN.
 bool within_setting(const SettingRow& row, double value);
 // "the number of samples per pixel is 99: it must lie in 1 … 16"; `name` as in check_limit().
 Status check_setting(const SettingRow& row, double value, const char* name = nullptr);
-// The choice of that name, which need not be null-terminated; false if there is none.
+// Finds the choice with that name, which need not be null-terminated; returns false if there is none.
 bool find_choice(const SettingRow& row, const char* name, std::size_t name_bytes, double* value);
-// Writes "1 … 16", or "scene, nearest or bilinear"; terminated, truncated to `size`.
+// Writes "1 … 16" or "scene, nearest or bilinear"; terminated, truncated to `size`.
 void describe_range(const SettingRow& row, char* text, std::size_t size);
-// Writes "4", "0.5" or "nearest"; a real with at most `digits` significant digits. Terminated, truncated to `size`.
+// Writes "4", "0.5" or "nearest", a real with at most `digits` significant digits; terminated, truncated to `size`.
 void describe_value(const SettingRow& row, double value, int digits, char* text, std::size_t size);
 
 bool same_quality(const Quality& a, const Quality& b);
-// Whether light points and the radiance bound are the same with both, given the same scene and effects.
+// Returns whether both give equal light points and radiance bounds for the same scene and effects.
 bool same_lights(const Quality& a, const Quality& b);
-// Settings for a reference: each exact if it has an exact value, otherwise as requested.
+// Settings for a reference: each at its exact value if it has one, otherwise as requested.
 Settings reference_settings(const Settings& asked);
 
 constexpr bool setting_rows_valid() {

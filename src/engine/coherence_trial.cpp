@@ -6,15 +6,15 @@
 namespace pocketray {
 namespace {
 
-// Derived: a frame that saves less than a thirtieth does not pay, and what a try in vain cost must be less than that of
-// the frames traced whole after it. Rests double, so that scenes in which everything moves forget the first tries.
-// What was saved since may be lost again, up to one frame's time, so that an interruption of the program costs no rest.
-// After 31 frames, a try that cost most of one is within kMostLoss; after 255, one that cost seven. Longer rests,
-// chosen, would miss for seconds that a scene has calmed down.
+// Derived: a frame that saves less than a thirtieth does not pay, and a failed try must cost less than it delays the
+// frames traced whole after it. Rests double, so scenes in which everything moves recover the cost of the first tries.
+// Savings act as credit, up to one frame's time, so that an interruption of the program causes no rest. After 31
+// frames, a try that cost most of a frame is within kMostLoss; after 255, one that cost seven. Longer rests, chosen,
+// would take seconds to notice that a scene has calmed down.
 constexpr double kLeastGain = 0.97;
 constexpr double kMostLoss = 0.03;
 constexpr std::uint32_t kRestMax = 31, kLongRestMax = 255;
-// Measured, `bench --coherence`: recording multiplies a frame's time by up to 1.3. Only until a plain one was traced.
+// Measured, `bench --coherence`: recording multiplies a frame's time by up to 1.3. Used until a plain frame is timed.
 constexpr double kPlainShare = 0.75;
 
 void rest_for(CoherenceTrial* trial, std::uint32_t frames) {

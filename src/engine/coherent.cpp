@@ -68,7 +68,7 @@ bool begin_following(Renderer* renderer) {
     state->whole_because = state->trial.is_warming ? "the first frame" : "tracing only what changed did not pay";
   } else {
     follow_frame(c, renderer->frame, &state->whole_because);
-    if (state->whole_because && state->trial.tries_again) state->whole_because = "coherence is tried again";
+    if (state->whole_because && state->trial.tries_again) state->whole_because = "retrying coherence";
     return true;
   }
   forget_frame(c);

@@ -30,7 +30,7 @@ inline pocketray_result to_result(const Status& status, pocketray_result result)
   return status.ok ? POCKETRAY_OK : refuse(result, status);
 }
 
-// Whether a caller's structure is readable: not null, and of a size that this library knows. Structures of earlier
+// Checks that a caller's structure is readable: not null, and of a size that this library knows. Structures of earlier
 // versions end after the fields that those versions had, `first_size` at least.
 Status check_struct(const char* name, const void* structure, std::size_t first_size, std::size_t size);
 
@@ -42,7 +42,7 @@ Status read_struct(const char* name, const T* given, T* result, std::size_t firs
   result->struct_size = sizeof(T);
   return success();
 }
-// Copies a structure to a caller's, up to that one's size.
+// Copies a structure into a caller's, up to the caller's size.
 template <class T>
 Status write_struct(const char* name, T value, T* given, std::size_t first_size = sizeof(T)) {
   RETURN_IF_ERROR(check_struct(name, given, first_size, sizeof(T)));
@@ -62,11 +62,11 @@ Status read_settings(const pocketray_settings& given, Settings* settings);
 // Fails whenever make_camera_rays() would.
 Status read_camera(const pocketray_camera* given, const Settings& settings, Camera* camera);
 
-// Bytes that pocketray_open() needs for the renderer as planned.
+// Bytes that pocketray_open() needs for the planned renderer.
 std::size_t instance_need(const Renderer& renderer);
 void write_plan(const Renderer& renderer, std::size_t scratch_bytes, pocketray_plan* plan);
 
-// Plans effects again after a change of the scene or settings, within the planned memory. Ends a frame in progress.
+// Replans effects after a change of the scene or settings, within the planned memory. Ends a frame in progress.
 Status plan_again(pocketray_instance* instance, const Settings& settings);
 
 }  // namespace pocketray

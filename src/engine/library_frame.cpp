@@ -16,7 +16,7 @@ constexpr PixelFormat kFormats[] = {kXrgb8888, kXbgr8888, kRgb565, kBgr565, kRgb
 constexpr int kFormatCount = POCKETRAY_RGB_FLOAT + 1;
 static_assert(sizeof kFormats / sizeof kFormats[0] == POCKETRAY_RGB_FLOAT, "one for each format but floats");
 
-// A caller's pixels, checked.
+// A caller's checked pixels.
 struct Target {
   void* data;
   int line_bytes;
@@ -84,9 +84,9 @@ void clear_costs(pocketray_instance* instance) {
   instance->refining = false;
 }
 
-// Bands of rows, with a call of the progress function after each, which may end the frame.
+// Renders bands of rows and calls the progress function after each, which may end the frame.
 Status render_bands(pocketray_instance* instance, double seconds) {
-  // From within a call, another function may be set for the next frame.
+  // The function may set another one for the next frame.
   const pocketray_progress progress = instance->progress;
   void* const user = instance->progress_user;
   CHECK(progress != nullptr);
@@ -107,7 +107,7 @@ Status render_bands(pocketray_instance* instance, double seconds) {
   return success();
 }
 
-// Rows of the frame that are complete, from the top.
+// Number of complete rows of the frame, from the top.
 std::uint32_t rows_done(const Renderer& renderer, const CoherentFrame& frame) {
   if (frame.list.done_count < frame.list.span_count) return frame.list.spans[frame.list.done_count].row;
   return frame.all ? renderer.settings.height : std::min(frame.tile_row * kChangeTileSide, renderer.settings.height);

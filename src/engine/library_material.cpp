@@ -27,7 +27,7 @@ pocketray_material to_caller(const Material& m) {
   return result;
 }
 
-// The rest of the material stays as it is.
+// Changes only what the caller's structure describes.
 void from_caller(const pocketray_material& given, Material* m) {
   m->diffuse = to_vec3(given.diffuse);
   m->specular = to_vec3(given.specular);

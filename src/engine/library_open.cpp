@@ -1,4 +1,4 @@
-// Opening scenes: the caller's request → a planned and built renderer in the caller's memory.
+// Opens scenes: the caller's request → a planned and built renderer in the caller's memory.
 #include <cstring>
 #include <new>
 
@@ -19,7 +19,7 @@ constexpr std::size_t kPlanBytesMin = offsetof(pocketray_plan, further_effect_co
 static_assert(kMemoryPartMax <= POCKETRAY_MEMORY_PARTS_MAX, "and all parts of the memory");
 static_assert(kNone == POCKETRAY_NONE, "no such index");
 
-// The request, read and checked.
+// The checked request.
 struct Request {
   pocketray_source source;
   pocketray_options options;
@@ -117,7 +117,7 @@ std::size_t overrides_need(const Request& q, const Scene& scene) {
   return moves_nodes(q) ? arena_need<NodeOverride>(scene.nodes.count) : 0;
 }
 
-// The run of vertices used by the triangles of a material.
+// Finds the run of vertices used by the triangles of a material.
 Status find_run(const Scene& scene, std::uint32_t part, std::uint32_t material, MovingMesh* mesh) {
   std::uint32_t first = kNone, last = 0;
   for (const Triangle& t : scene.triangles) {
@@ -224,8 +224,8 @@ pocketray_result need_more(const char* what, std::size_t needed, std::size_t giv
                 failure("%s needs %zu bytes of memory but %zu were given", what, needed, given));
 }
 
-// Gives the memory planned for the caller's lights and transforms to them. The first frame's pose was made without
-// them.
+// Hands the memory planned for the caller's lights and transforms to the
+// pose; the first frame was posed without them.
 void attach_changes(pocketray_instance* instance) {
   Pose* pose = &instance->renderer.pose;
   if (pose->nodes.empty()) return;  // nothing moves

@@ -31,7 +31,7 @@
 namespace pocketray {
 namespace {
 
-// Whether the lights of the last frame are still valid: nothing moves, and nothing that they depend on has changed.
+// Returns whether the last frame's lights are still valid: nothing moves, and their inputs are unchanged.
 bool is_lit(const Renderer& renderer) {
   return renderer.lit_mask == renderer.effects.mask && !renderer.pose.positions.count && !renderer.pose.lights.count &&
          same_lights(renderer.lit_settings, renderer.settings);
@@ -99,7 +99,7 @@ void light_scene(Renderer* renderer) {
     if (has(renderer->effects.mask, Effect::source_selection))
       place_light_tree(renderer->light_nodes, renderer->light_order, &renderer->frame);
     if (has(renderer->effects.mask, Effect::instant_radiosity)) {
-      renderer->frame.cone = {0, 0};  // of the last frame's camera, which their walks do not see
+      renderer->frame.cone = {0, 0};  // belongs to the last frame's camera, which the lights' walks ignore
       place_virtual_lights(&renderer->frame);
     }
     bool spawns = has(renderer->effects.mask, Effect::mirror) || has(renderer->effects.mask, Effect::refraction) ||

@@ -17,8 +17,8 @@
 namespace pocketray {
 namespace {
 
-// As of interleaved pixels (shade/interleaved.cpp): two show the same surface if it is the same triangle, or if the
-// second lies off the plane of the first by at most this slope and their normals differ by less than this cosine.
+// As for interleaved pixels (shade/interleaved.cpp): two show the same surface if it is the same triangle, or if the
+// second point lies off the first's plane by at most this slope and their normals differ by less than this cosine.
 constexpr float kSamePlane = 0.15f, kSameNormal = 0.7f;
 
 bool shows_same(const Surface& s, const MappedSurface& m) {
@@ -29,7 +29,7 @@ bool shows_same(const Surface& s, const MappedSurface& m) {
   return height * height <= kSamePlane * kSamePlane * dot(way, way);
 }
 
-// The mean of light from mapped pixels, by weight.
+// Weighted mean of light from mapped pixels.
 struct Mean {
   Vec3 sum = {0, 0, 0};
   float weight = 0;
@@ -37,7 +37,7 @@ struct Mean {
   void add(const Vec3& light, float w) { sum += light * w, weight += w; }
 };
 
-// Mapped pixels [left, right] × [top, bottom] about a place, which is in units of the grid.
+// Mapped pixels [left, right] × [top, bottom] around a place, which is in units of the grid.
 struct Neighbourhood {
   std::uint32_t left, right, top, bottom;
 };
@@ -47,7 +47,7 @@ Neighbourhood around(const LightGrid& grid, const Vec2& place, std::uint32_t rea
           std::min(y + 1 + reach, grid.rows - 1)};
 }
 
-// Adds those that show the surface, or all that show any; `weigh` takes a distance along one axis.
+// Adds the mapped pixels that show surface `s`, or any surface if null; `weigh` maps a distance per axis.
 template <class Weigh>
 void gather(const LightMap& map, const Surface* s, const Vec2& place, const Neighbourhood& n, Weigh weigh, Mean* mean) {
   for (std::uint32_t row = n.top; row <= n.bottom; ++row)
@@ -61,10 +61,10 @@ void gather(const LightMap& map, const Surface* s, const Vec2& place, const Neig
     }
 }
 
-// Light on a surface seen at a place of the map: from the four mapped pixels about it; if too few show the surface,
-// from the sixteen; if none does, from any of these. False if they show nothing.
+// Light on a surface seen at a place of the map: from the four mapped pixels around it; if too few show the surface,
+// from the sixteen around it; if none does, from any of these. Returns false if they show nothing.
 bool light_at(const LightMap& map, const Surface& s, const Vec2& place, Vec3* light) {
-  constexpr float kEnough = 1.0f / 64;  // chosen: below, the nearest one that shows the surface is a pixel or less away
+  constexpr float kEnough = 1.0f / 64;  // chosen: below, the nearest that shows the surface is at most a pixel away
   constexpr std::uint32_t kWider = 1;
   auto linear = [](float d) { return std::max(0.0f, 1 - d); };
   auto wide = [](float d) { return 1 / (1 + d * d); };
@@ -81,7 +81,7 @@ bool light_at(const LightMap& map, const Surface& s, const Vec2& place, Vec3* li
   return true;
 }
 
-// Where the map shows the surface, in units of its grid. False if it does not.
+// Finds where the map shows the surface, in units of its grid. Returns false if it does not.
 bool place_in_map(const LightMap& map, const CameraRays& camera, bool is_of_frame, std::uint32_t column,
                   std::uint32_t row, const Vec3& point, Vec2* place) {
   const auto pitch = static_cast<float>(map.grid.pitch);
@@ -102,8 +102,8 @@ bool same_camera(const CameraRays& a, const CameraRays& b) {
          a.orthographic == b.orthographic && a.width == b.width && a.height == b.height;
 }
 
-// The surface of a sample that takes light from a map: not one that others are seen through. Without first hits, its
-// ray is traced.
+// Finds the surface of a sample that takes light from a map, unless it is one that others are seen through. Without
+// first hits, traces the sample's ray.
 bool find_surface(Tracer* tracer, const Hit* first_hits, std::uint32_t sample, std::uint32_t column, std::uint32_t row,
                   Surface* s) {
   const FrameData& frame = *tracer->frame;

@@ -1,16 +1,16 @@
 // Light maps: a frame's indirect light at every few pixels, rendered elsewhere, and how this machine adds it to a frame
-// that it has traced with its own indirect light, or none. What is mapped is light before surfaces reflect it, which is
-// smooth; this machine knows the surface of each pixel, and multiplies by its albedo.
+// that it traced with its own indirect light, or none. Maps hold light before reflection, which is smooth; this machine
+// knows the surface of each pixel and multiplies by its albedo.
 //
-// A pixel takes the light of the mapped pixels about it that show its surface (joint bilateral upsampling [Kopf 2007];
-// for indirect light [Sloan 2007]). Their surfaces are this machine's own first hits, so nothing but light is sent. A
+// A pixel takes the light of the surrounding mapped pixels that show its surface (joint bilateral upsampling [Kopf
+// 2007]; for indirect light [Sloan 2007]). Their surfaces are this machine's own first hits, so only light is sent. A
 // map of an earlier frame is looked up where its camera saw the pixel's surface.
 #pragma once
 #include "engine/renderer.h"
 
 namespace pocketray {
 
-// Pixels between mapped ones, along rows and columns.
+// Spacing of mapped pixels, along rows and columns.
 constexpr std::uint32_t kLightPitchMin = 2, kLightPitchMax = 16;
 
 struct LightGrid {
@@ -21,7 +21,7 @@ inline LightGrid light_grid(const Settings& settings, std::uint32_t pitch) {
 }
 constexpr std::uint32_t light_count(const LightGrid& grid) { return grid.columns * grid.rows; }
 
-// What a mapped pixel shows. triangle: kNone if it shows no surface that reflects indirect light.
+// The surface that a mapped pixel shows. triangle: kNone if no surface there reflects indirect light.
 struct MappedSurface {
   Vec3 point, normal;
   std::uint32_t triangle;
@@ -29,36 +29,36 @@ struct MappedSurface {
 
 struct LightMap {
   LightGrid grid;
-  CameraRays camera;             // of its frame,
+  CameraRays camera;             // of the map's frame,
   double seconds = 0;            // and that frame's time
-  const MappedSurface* surface;  // of each mapped pixel, by rows
-  const Vec3* light;             // the same: as indirect_light() has it
+  const MappedSurface* surface;  // per mapped pixel, by rows
+  const Vec3* light;             // per mapped pixel: the value of indirect_light()
 };
 
-// The indirect light of frames that take more from a map: ambient light, or what the scene has besides stored
-// radiosity, which is among what maps have.
+// Returns the indirect light that frames render themselves when a map adds the rest: ambient light, or what the scene
+// has besides stored radiosity, which maps include.
 IndirectChoice own_indirect(const Scene& scene);
 
-// Why the indirect light of a renderer's frames cannot come from a map; null: it can.
+// Returns why a map cannot hold the indirect light of a renderer's frames; null: it can.
 const char* mapped_light_unfit(const Renderer& renderer);
-// Why a renderer's frames, of its own indirect light, cannot take more from a map; null: they can. The text continues
+// Returns why a renderer's frames, with their own indirect light, cannot use a map; null: they can. The text continues
 // "light maps: ".
 const char* light_map_unfit(const Renderer& renderer);
 
-// Number of first hits that the frame keeps for what follows: set FrameData::first_hits after prepare_frame().
+// Number of first hits that the frame keeps for later steps: set FrameData::first_hits after prepare_frame().
 std::size_t first_hit_count(const Settings& settings);
 
-// The surfaces of mapped pixels, by the first hits of the frame's rows above `traced_end`; of those below, rays are
-// traced. `surfaces` has light_count(grid) places.
+// Finds the surfaces of mapped pixels, from the frame's first hits in rows above `traced_end`, below it by tracing
+// rays. `surfaces` has light_count(grid) elements.
 void take_mapped_surfaces(Renderer* renderer, const Hit* first_hits, std::uint32_t traced_end, const LightGrid& grid,
                           MappedSurface* surfaces);
 
-// Replaces the renderer's own indirect light on the first surfaces of rows of its image by that of the map. Where these
-// are behind glass or in mirrors, the own light stays. The rows have been traced with these first hits.
+// Replaces the renderer's own indirect light by the map's on the first surfaces in rows of its image. Behind glass and
+// in mirrors, its own light stays. The rows must have been traced with these first hits.
 void add_mapped_light(Renderer* renderer, const Hit* first_hits, const LightMap& map, std::uint32_t row_begin,
                       std::uint32_t row_end);
 
-// Whether the map is of the same view at the same time as the prepared frame.
+// Returns whether the map has the view and time of the prepared frame.
 bool is_map_of_frame(const LightMap& map, const Renderer& renderer, double seconds);
 
 }  // namespace pocketray

@@ -10,11 +10,11 @@ namespace {
 
 // Less is left to the next wait: a sleep overruns by a quarter of this, Linux's timer slack of 50 µs [prctl(2)].
 constexpr std::int64_t kOwedNsMax = 200'000;
-// Chosen: three display frames, about what another program takes now and then; a stop within a display frame or so; and
-// beyond any frame, so that sums stay far from overflow.
+// Chosen: three display frames, about the time that other programs take now and then; a stop within about a display
+// frame; and beyond any frame, so that sums stay far from overflow.
 constexpr std::int64_t kExcessNsMax = 50'000'000;  // more is not made up for: this CPU is too slow for the pace
 constexpr std::int64_t kSleepNsMax = 20'000'000;   // between two checks of `stop`
-constexpr double kPacedNsMax = 3600e9;             // no wait is longer
+constexpr double kPacedNsMax = 3600e9;             // maximum wait
 
 std::uint64_t to_ns(double ns) { return static_cast<std::uint64_t>(ns < kPacedNsMax ? ns : kPacedNsMax); }
 

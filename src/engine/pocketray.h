@@ -17,16 +17,16 @@
  *              up, right-handed. Vectors are float[3]: x, y, z or red, green, blue. Row 0 is the top of the picture.
  *   Results    Every call that can fail returns a pocketray_result: 0 or above is no error. Null pointers, NaN, numbers
  *              out of range and damaged files are refused with an error; a call that fails changes nothing.
- *   Memory     The library allocates nothing but its threads (options.threads − 1 of them). Arguments are copied or
- * used during the call; only `memory`, and the bytes of a scene that is not copied, must stay in place until
- *              pocketray_close().
+ *   Memory     The library allocates nothing except its threads (options.threads − 1 of them). Arguments are copied or
+ *              only used during the call; `memory`, and the bytes of a scene that is not copied, must stay in place
+ *              until pocketray_close().
  *   Threads    Several threads may use several instances. One instance takes one call at a time; only
  *              pocketray_set_stop() may be called at any time, from any thread or signal handler.
  *   Versions   A structure that may grow starts with struct_size, which its _INIT sets together with the defaults. A
  *              library accepts the structures of all earlier versions with the same POCKETRAY_VERSION_MAJOR and, while
  *              that is 0, the same POCKETRAY_VERSION_MINOR.
- *   Pictures   The same scene, settings, camera and time give the same pixels on every CPU, with any number of threads,
- *              and the same as the program `pocketray`.
+ *   Pictures   A scene with given settings, camera and time gives the same pixels on every CPU, with any number of
+ *              threads, and in the program `pocketray`.
  */
 #ifndef POCKETRAY_H
 #define POCKETRAY_H
@@ -78,14 +78,14 @@ POCKETRAY_API const char* pocketray_builtin_name(uint32_t index);
 typedef struct pocketray_source {
   size_t struct_size;
   const char* builtin; /* null: `bytes` */
-  const void* bytes;   /* aligned to 64, and unchanged until pocketray_close(), unless copied */
+  const void* bytes;   /* aligned to 64 and unchanged until pocketray_close(), unless copied */
   size_t byte_count;
   int copy; /* 1: pocketray_open() copies the bytes to its memory; they need no alignment */
 } pocketray_source;
 #define POCKETRAY_SOURCE_INIT \
   { sizeof(pocketray_source), NULL, NULL, 0, 0 }
 
-/* Nearest and bilinear read full-size texels alone. As the scene: trilinear where a texture has smaller levels.
+/* Nearest and bilinear read only full-size texels. As the scene: trilinear where a texture has smaller levels.
    Anisotropic: sharper at grazing angles. */
 enum {
   POCKETRAY_FILTER_AS_SCENE = 0,
@@ -101,7 +101,7 @@ typedef struct pocketray_settings {
   size_t struct_size;
   int samples_per_pixel;     /* 1 … 16 */
   int ray_depth;             /* reflections and refractions along a path, 0 … 16 */
-  int points_per_area_light; /* 1 … 256; memory is reserved for the number at pocketray_open() */
+  int points_per_area_light; /* 1 … 256; memory is reserved for the number given to pocketray_open() */
   float cut_off_levels;      /* largest error per sample from skipped rays, in display levels, 0 … 64 */
   int texture_filter;        /* POCKETRAY_FILTER_… */
   int normals;               /* POCKETRAY_NORMALS_… */
@@ -129,22 +129,22 @@ typedef struct pocketray_part {
   uint32_t material;                   /* which no other material may use */
 } pocketray_part;
 
-/* Whether pocketray_render() traces only what may have changed since the last frame it rendered; the pictures stay the
- * same. AUTO: where the scene moves or is recolorable, memory allows it and it pays; the first frame is whole. */
+/* pocketray_render() traces only what may have changed since the last frame that it rendered; the pictures stay the
+ * same. AUTO: if the scene moves or is recolorable, memory allows it and it pays off; the first frame is whole. */
 enum { POCKETRAY_COHERENCE_OFF = 0, POCKETRAY_COHERENCE_AUTO = 1, POCKETRAY_COHERENCE_ON = 2 };
 
 /* Fixed from pocketray_open() on. */
 typedef struct pocketray_options {
   size_t struct_size;
   int width, height;                  /* pixels, 1 … 8192 */
-  int threads;                        /* that trace, including the caller's: 1 … 64 */
-  int measure_exposure;               /* 1: measure it on the first picture, whatever the scene says */
+  int threads;                        /* tracing threads, including the caller's: 1 … 64 */
+  int measure_exposure;               /* 1: measure it on the first picture, even if the scene states one */
   const pocketray_settings* settings; /* null: POCKETRAY_SETTINGS_INIT */
   const pocketray_camera* camera;     /* null: the scene's camera `camera_index` */
   uint32_t camera_index;
   uint32_t light_count_max;    /* reserve memory for pocketray_set_lights(); 0: lights are fixed */
-  const char* effects;         /* "auto" plus or minus some: "auto,-shadow"; null: auto, what the scene needs */
-  const char* accelerator;     /* "bvh", "compact", "grid", …; null: the file's, else the fastest that fits */
+  const char* effects;         /* "auto" plus or minus effects: "auto,-shadow"; null: auto, what the scene needs */
+  const char* accelerator;     /* "bvh", "compact", "grid", …; null: the file's, or the fastest that fits */
   const pocketray_part* parts; /* of a scene without animation: each becomes a node, in this order */
   uint32_t part_count;
   int movable; /* 1: reserve memory for pocketray_set_node() on the nodes of an animated scene */
@@ -162,7 +162,7 @@ typedef struct pocketray_effect {
   const char* name;          /* as in options.effects; never freed */
   const char* called_for_by; /* scene content that needs it; never freed */
   int on;                    /* whether it is simulated */
-  char reason[96];           /* why it is, or is not */
+  char reason[96];           /* why it is on or off */
 } pocketray_effect;
 
 typedef struct pocketray_memory_part {
@@ -177,8 +177,8 @@ typedef struct pocketray_memory_part {
 /* The plan for a scene, options and settings. */
 typedef struct pocketray_plan {
   size_t struct_size;
-  size_t memory_bytes;     /* that pocketray_open() needs; with less, it may fall back on a smaller accelerator */
-  size_t scratch_bytes;    /* that pocketray_make_plan() needs; 0 for a .pray file aligned to 64 and without parts */
+  size_t memory_bytes;     /* needed by pocketray_open(); with less, it may fall back on a smaller accelerator */
+  size_t scratch_bytes;    /* needed by pocketray_make_plan(); 0 for a .pray file aligned to 64, without parts */
   const char* accelerator; /* never freed */
   uint32_t vertex_count, triangle_count, material_count, light_count, camera_count, node_count;
   int default_camera, default_lights; /* 1: the scene has none and got defaults */
@@ -188,7 +188,7 @@ typedef struct pocketray_plan {
   uint32_t effect_count, memory_part_count;
   pocketray_effect effects[POCKETRAY_EFFECTS_MAX];
   pocketray_memory_part memory_parts[POCKETRAY_MEMORY_PARTS_MAX];
-  /* Since 0.2.2: the effects that come after those above */
+  /* Since 0.2.2: effects beyond POCKETRAY_EFFECTS_MAX */
   uint32_t further_effect_count;
   pocketray_effect further_effects[POCKETRAY_FURTHER_EFFECTS_MAX];
 } pocketray_plan;
@@ -204,8 +204,8 @@ POCKETRAY_API pocketray_result pocketray_make_plan(const pocketray_source* sourc
 
 typedef struct pocketray_instance pocketray_instance; /* one scene, ready to render; lies in the memory given */
 
-/* Opens a scene. `memory` belongs to the instance until pocketray_close(); the instance uses no other. *instance is
- * null after an error. */
+/* Opens a scene. `memory` belongs to the instance until pocketray_close(); it uses no other memory. *instance is null
+ * after an error. */
 POCKETRAY_API pocketray_result pocketray_open(const pocketray_source* source, const pocketray_options* options,
                                               void* memory, size_t memory_bytes, pocketray_instance** instance);
 /* Ends the instance's threads and returns the memory to you. Null is allowed. */
@@ -217,8 +217,8 @@ POCKETRAY_API pocketray_result pocketray_get_plan(const pocketray_instance* inst
 POCKETRAY_API pocketray_result pocketray_get_settings(const pocketray_instance* instance, pocketray_settings* settings);
 POCKETRAY_API pocketray_result pocketray_set_settings(pocketray_instance* instance, const pocketray_settings* settings);
 
-/* The camera. Get: that of the last frame or the one set since. Set: replaces the scene's. Use scene: the scene's
- * camera `camera_index` again, which moves if it is animated; in a scene without cameras, index 0 is the default one.
+/* The camera. Get: the last frame's, or the one set since. Set: replaces the scene's. Use scene: returns to the scene's
+ * camera `camera_index`, which moves if it is animated; in a scene without cameras, index 0 is the default camera.
  */
 POCKETRAY_API pocketray_result pocketray_get_camera(const pocketray_instance* instance, pocketray_camera* camera);
 POCKETRAY_API pocketray_result pocketray_set_camera(pocketray_instance* instance, const pocketray_camera* camera);
@@ -226,15 +226,15 @@ POCKETRAY_API pocketray_result pocketray_use_scene_camera(pocketray_instance* in
 
 enum { POCKETRAY_POINT_LIGHT = 0, POCKETRAY_SPOT_LIGHT = 1, POCKETRAY_DIRECTIONAL_LIGHT = 2 };
 
-/* A light other than a surface; emissive materials are area lights anyway. */
+/* A light that is not a surface; emissive materials are area lights in any case. */
 typedef struct pocketray_light {
   int kind;                   /* POCKETRAY_…_LIGHT */
   float position[3];          /* point, spot */
-  float direction[3];         /* spot, directional: the way the light travels, of length 1 */
+  float direction[3];         /* spot, directional: direction of travel, of length 1 */
   float intensity[3];         /* point, spot: radiant intensity; directional: irradiance on a surface that faces it */
   float range;                /* no light beyond this distance; 0: no limit */
-  float cos_inner, cos_outer; /* spot: cosines of the angles of full and of no light */
-  uint32_t node;              /* it moves with: position and direction are in its space; POCKETRAY_NONE: none */
+  float cos_inner, cos_outer; /* spot: cosines of the angles of full light and of none */
+  uint32_t node;              /* node it moves with, in whose space it is given; POCKETRAY_NONE: none */
 } pocketray_light;
 #define POCKETRAY_LIGHT_INIT \
   { 0, {0, 0, 0}, {0, -1, 0}, {1, 1, 1}, 0, 1, 0, POCKETRAY_NONE }
@@ -243,7 +243,7 @@ typedef struct pocketray_light {
  * be null if that is 0, and their total number to *light_count. */
 POCKETRAY_API pocketray_result pocketray_get_lights(const pocketray_instance* instance, pocketray_light* lights,
                                                     uint32_t capacity, uint32_t* light_count);
-/* Replaces all of them by at most options.light_count_max lights. */
+/* Replaces all lights by at most options.light_count_max lights. */
 POCKETRAY_API pocketray_result pocketray_set_lights(pocketray_instance* instance, const pocketray_light* lights,
                                                     uint32_t light_count);
 
@@ -252,11 +252,11 @@ typedef struct pocketray_material {
   size_t struct_size;
   float diffuse[3];                           /* albedo; × texture × vertex colour */
   float specular[3], mirror[3];               /* reflectance of the highlight at normal incidence, and of the mirror */
-  float specular_tinted[3], mirror_tinted[3]; /* the parts of these that texture and vertex colour tint, as of metals */
-  float transmission[3];                      /* of glass; 0: it is opaque */
+  float specular_tinted[3], mirror_tinted[3]; /* the parts of these that texture and vertex colour tint, as in metals */
+  float transmission[3];                      /* of glass; 0: opaque */
   float absorption[3];                        /* per scene unit within glass; 0 … 1e18 */
   float emission[3];                          /* radiance; × its own texture, which stays; 0 … 1e18 */
-  uint32_t texture;                           /* one of the scene's, as its other materials use it, or POCKETRAY_NONE */
+  uint32_t texture;                           /* of the scene, as its other materials use it, or POCKETRAY_NONE */
   uint32_t reserved;
 } pocketray_material;
 #define POCKETRAY_MATERIAL_INIT                                                                                       \
@@ -265,19 +265,19 @@ typedef struct pocketray_material {
         {0, 0, 0}, POCKETRAY_NONE, 0                                                                                  \
   }
 
-/* A material, of plan.material_count. Get: as the next frame shows it. Set: recolours what it is on, textures it anew,
- * or dims a lamp, down to 0; change what get returned. The scene as opened decides for good what is simulated and which
+/* One of plan.material_count materials. Get: as the next frame shows it. Set: recolours or retextures its surfaces, or
+ * dims a lamp, down to 0; modify what get returned. The scene as opened fixes which effects are simulated and which
  * materials are lamps. Light that the scene stores with its surfaces (effect radiosity) stays as it was solved.
- * POCKETRAY_ERROR_LIMIT: options.recolorable did not ask for this, the material calls for an effect that the scene as
- * opened does not (a mirror, a first texture, …), or emits where none did. POCKETRAY_ERROR_ARGUMENT: a number is out of
- * range, or a texture of the material already makes what was changed (metallic-roughness maps: all colours but
- * absorption and emission). */
+ * POCKETRAY_ERROR_LIMIT: options.recolorable is not set, the material calls for an effect that the opened scene does
+ * not (a mirror, a first texture, …), or emits where none did. POCKETRAY_ERROR_ARGUMENT: a number is out of range, or a
+ * texture of the material provides what was changed (metallic-roughness maps: all colours except absorption and
+ * emission). */
 POCKETRAY_API pocketray_result pocketray_get_material(const pocketray_instance* instance, uint32_t material,
                                                       pocketray_material* result);
 POCKETRAY_API pocketray_result pocketray_set_material(pocketray_instance* instance, uint32_t material,
                                                       const pocketray_material* changed);
 
-/* Radiance where a ray hits nothing, and constant indirect light: radiance from everywhere; 0 … 1e18. */
+/* Radiance of rays that hit nothing, and of constant indirect light from all directions; 0 … 1e18. */
 POCKETRAY_API pocketray_result pocketray_get_surroundings(const pocketray_instance* instance, float background[3],
                                                           float ambient[3]);
 POCKETRAY_API pocketray_result pocketray_set_surroundings(pocketray_instance* instance, const float background[3],
@@ -289,8 +289,8 @@ typedef struct pocketray_node {
   size_t struct_size;
   uint32_t parent;     /* a lower index, or POCKETRAY_NONE */
   int overridden;      /* 1: set by pocketray_set_node() */
-  float to_parent[12]; /* if overridden for the next frame, otherwise as of the last one */
-  float to_world[12];  /* as of the last frame */
+  float to_parent[12]; /* of the next frame if overridden, otherwise of the last one */
+  float to_world[12];  /* of the last frame */
 } pocketray_node;
 #define POCKETRAY_NODE_INIT                               \
   {                                                       \
@@ -299,15 +299,15 @@ typedef struct pocketray_node {
 
 POCKETRAY_API pocketray_result pocketray_get_node(const pocketray_instance* instance, uint32_t node,
                                                   pocketray_node* result);
-/* Places a node in its parent's space (a part: in the scene's) in all further frames, whatever its animation says. Null
+/* Places a node in its parent's space (a part: in the scene's) in all further frames, overriding its animation. Null
  * returns it to the animation, or a part to its original place. Its children, meshes, skins, lights and cameras follow.
  * A mirroring transform turns surfaces inside out. POCKETRAY_ERROR_LIMIT: neither options.movable nor options.parts
- * asked for this. */
+ * is set. */
 POCKETRAY_API pocketray_result pocketray_set_node(pocketray_instance* instance, uint32_t node,
                                                   const float to_parent[12]);
 
-/* Displayed is exposure × radiance: 2⁻⁶⁰ … 2⁶⁰. Measuring sets the exposure that shows the scene's geometric mean, as
- * the camera sees it at a time, as middle grey; its `exposure` may be null. */
+/* The display shows exposure × radiance; 2⁻⁶⁰ … 2⁶⁰. Measuring sets the exposure that makes the geometric mean of the
+ * camera's view at a time middle grey; its `exposure` may be null. */
 POCKETRAY_API pocketray_result pocketray_get_exposure(const pocketray_instance* instance, float* exposure);
 POCKETRAY_API pocketray_result pocketray_set_exposure(pocketray_instance* instance, float exposure);
 POCKETRAY_API pocketray_result pocketray_measure_exposure(pocketray_instance* instance, double seconds,
@@ -325,12 +325,12 @@ enum {
   POCKETRAY_RGB_FLOAT = 6 /* three floats: linear radiance, before exposure */
 };
 
-/* Where a picture is written, and how. */
+/* Destination and format of a picture. */
 typedef struct pocketray_pixels {
   size_t struct_size;
-  void* data;           /* top left of the screen; aligned as its pixels, to 1, 2 or 4 bytes */
-  size_t byte_count;    /* in total: line_bytes for every row but the last, which may end with its pixels */
-  size_t line_bytes;    /* from one screen row to the next; a multiple of that alignment */
+  void* data;           /* top left of the screen; aligned to the pixel size, 1, 2 or 4 bytes */
+  size_t byte_count;    /* total: line_bytes for every row except the last, which may end with its pixels */
+  size_t line_bytes;    /* from one screen row to the next; a multiple of the alignment */
   int format;           /* POCKETRAY_XRGB8888, … */
   int rotation_degrees; /* of the picture, clockwise: 0, 90, 180 or 270; a quarter turn puts width × height pixels on a
                            screen of height × width. POCKETRAY_RGB_FLOAT: 0 */
@@ -345,7 +345,7 @@ typedef struct pocketray_pixels {
 POCKETRAY_API pocketray_result pocketray_render(pocketray_instance* instance, double seconds,
                                                 const pocketray_pixels* pixels);
 
-/* The same picture, coarse first: begins a frame, then refines it for some milliseconds per call, by at least a few
+/* Renders the picture coarse first: begins a frame, then refines it for some milliseconds per call, by at least a few
  * tiles of 8 × 8 pixels. Pass the same pixels each time: only changed rows are written. POCKETRAY_OK: the frame is
  * finished; POCKETRAY_UNFINISHED: call again; POCKETRAY_STOPPED: call again when the stop flag is cleared.
  * pocketray_render() and any change of the instance end a frame in progress. */
@@ -353,13 +353,13 @@ POCKETRAY_API pocketray_result pocketray_begin(pocketray_instance* instance, dou
 POCKETRAY_API pocketray_result pocketray_refine(pocketray_instance* instance, double milliseconds,
                                                 const pocketray_pixels* pixels);
 
-/* 1: rendering stops within a few rows and does not start again until this is set to 0. May be called from any thread
+/* 1: rendering stops within a few rows and does not restart until the flag is set to 0. May be called from any thread
  * or signal handler. A null instance is allowed. */
 POCKETRAY_API void pocketray_set_stop(pocketray_instance* instance, int stop);
 
-/* Called by pocketray_render() after every few rows, on its thread; any result but 0 stops the frame. The only calls it
- * may make on the instance are pocketray_set_stop() and pocketray_set_progress(), which takes effect with the next
- * frame. `user` is passed on. Null: none. */
+/* Called by pocketray_render() after every few rows, on its thread; any result other than 0 stops the frame. The only
+ * calls it may make on the instance are pocketray_set_stop() and pocketray_set_progress(), which takes effect with the
+ * next frame. `user` is passed on. Null: none. */
 typedef int (*pocketray_progress)(void* user, uint32_t rows_done, uint32_t row_count);
 POCKETRAY_API pocketray_result pocketray_set_progress(pocketray_instance* instance, pocketray_progress progress,
                                                       void* user);
@@ -367,19 +367,19 @@ POCKETRAY_API pocketray_result pocketray_set_progress(pocketray_instance* instan
 /* Cost of the last frame. */
 typedef struct pocketray_frame {
   size_t struct_size;
-  double build_ms; /* of the accelerator, when the scene was opened */
+  double build_ms; /* the accelerator's, when the scene was opened */
   double pose_ms, refit_ms, trace_ms;
   uint64_t ray_count, rays_skipped; /* rays_skipped: could not have changed a display level */
   uint32_t rows_done, row_count;    /* of a frame being refined: rows of its finest grid */
-  /* Since 0.2.1. Of the last frame of pocketray_render(): */
+  /* Since 0.2.1, for the last frame of pocketray_render(): */
   uint64_t pixels_traced;
-  const char* whole_because; /* why it was traced whole, never freed; null: only what may have changed was traced */
+  const char* whole_because; /* why it was traced whole; never freed; null: only possible changes were traced */
 } pocketray_frame;
 #define POCKETRAY_FRAME_INIT \
   { sizeof(pocketray_frame), 0, 0, 0, 0, 0, 0, 0, 0, 0, NULL }
 POCKETRAY_API pocketray_result pocketray_get_frame(const pocketray_instance* instance, pocketray_frame* frame);
-/* Cost of each row of the last frame, in nanoseconds of one thread; 0 if it was not traced. Rows traced together count
- * the same. `row_count` must be the picture's height. */
+/* Cost of each row of the last frame, in nanoseconds of one thread; 0 if it was not traced. Rows traced together get
+ * equal shares. `row_count` must be the picture's height. */
 POCKETRAY_API pocketray_result pocketray_get_row_costs(const pocketray_instance* instance, uint64_t* nanoseconds,
                                                        uint32_t row_count);
 

@@ -7,7 +7,7 @@
 namespace pocketray {
 namespace {
 
-// An accelerator without refit is rebuilt, in memory that plan_memory() set aside.
+// An accelerator without refit is rebuilt, in memory that plan_memory() reserved.
 void follow_motion(Renderer* renderer) {
   CHECK(renderer->accel_info != nullptr);  // it has been planned
   CHECK_EQ(renderer->frame.positions.count, renderer->scene.positions.count);
@@ -17,7 +17,7 @@ void follow_motion(Renderer* renderer) {
   renderer->accel_info->build(&renderer->accel, &keep, &renderer->frame_arena);
 }
 
-// A material that then calls for an effect which the scene as opened does not keeps its last values.
+// If a material would then call for an effect that the opened scene does not, it keeps its last values.
 void change_posed_materials(Renderer* renderer) {
   for (const Channel& channel : renderer->scene.channels) {
     if (channel.path < ChannelPath::material_diffuse) continue;

@@ -1,7 +1,7 @@
-// What it takes an emulated machine to prepare a frame of a moving scene: a time per triangle that moves, to refit its
-// leaf, and one per such vertex. Skinned vertices count twice, those without normals a third. The clocks that
-// tests/bench/device/prepare_cost.py counts for four scenes of more than 3,000 triangles are met to within 13 %; joints
-// are not counted, so small scenes with many of them take up to 1.8 times as long.
+// Cost of preparing a frame of a moving scene on an emulated machine: a time per moving triangle, to refit its leaf,
+// and one per moving vertex. Skinned vertices count twice, those without normals a third. Fits the cycle counts of
+// tests/bench/device/prepare_cost.py for four scenes of more than 3,000 triangles to within 13 %; joints are not
+// counted, so small scenes with many joints take up to 1.8 times as long.
 #pragma once
 #include "scene/moving.h"
 
@@ -11,7 +11,7 @@ struct PrepareCost {
   double triangle_ns = 0, vertex_ns = 0;
 };
 
-// Nothing where no vertex moves.
+// 0 if no vertex moves.
 inline double prepare_ns(const PrepareCost& cost, const Scene& scene) {
   if (scene.moving_meshes.empty()) return 0;
   double vertices = 0;

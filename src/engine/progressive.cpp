@@ -9,10 +9,10 @@
 namespace pocketray {
 namespace {
 
-// Chosen: a batch of 256 pixels takes an ARM926 about 22 ms (`cornell`) and little to begin. Several threads take
-// single tiles, and more of them, since they wait for each other at the batch's end.
+// Chosen: a batch of 256 pixels takes an ARM926 about 22 ms (`cornell`) and has little overhead. Several threads take
+// single tiles, and more of them, since they wait for each other at the end of the batch.
 constexpr std::uint32_t kTilesAlone = 4, kTilesPerThread = 8;
-constexpr std::uint32_t kTileSpansMax = kTileRows * kTileSide / 2;  // without the pixels of a coarser grid
+constexpr std::uint32_t kTileSpansMax = kTileRows * kTileSide / 2;  // excludes the pixels of a coarser grid
 
 std::uint32_t batch_tiles(const Settings& settings) {
   std::uint32_t tiles = settings.threads > 1 ? kTilesPerThread * settings.threads : kTilesAlone;
@@ -23,10 +23,10 @@ struct Refinement {
   Renderer* renderer;
   Array<Span> tile_spans;
   Progressive* progressive;
-  std::uint32_t batch_end = 0;  // column after the batch's last one
+  std::uint32_t batch_end = 0;  // end column of the batch
 };
 
-// Whether each pixel costs the same with and without its neighbours.
+// Returns whether each pixel costs as much without its neighbours as with them.
 bool are_pixels_separate(const FrameData& frame) {
   if (frame.trace_strip) return false;
   return frame.ray_by_ray || frame.accel_info->packets_by_rays || frame.camera.orthographic;
@@ -39,7 +39,7 @@ std::uint32_t band_end(const Renderer& renderer, const Progressive& p) {
   return std::min(p.row + kTileRows, grid_side(renderer.settings.height, p.step));
 }
 
-// The pixels of a row of the grid, without those that are on a coarser grid if these are left out.
+// Lists the pixels of a row of the grid, optionally without those on a coarser grid.
 std::uint32_t list_row(std::uint32_t row, std::uint32_t begin, std::uint32_t end, bool without_coarser, Span* spans) {
   const auto y = static_cast<std::uint16_t>(row);
   if (!without_coarser || row % 2 == 1) {
@@ -52,7 +52,7 @@ std::uint32_t list_row(std::uint32_t row, std::uint32_t begin, std::uint32_t end
   return count;
 }
 
-// The next tiles of a band, in the order in which threads take them.
+// Takes the next tiles of a band, in the order in which threads take them.
 void next_tiles(void* context, SpanBatch* batch) {
   Refinement* r = static_cast<Refinement*>(context);
   const Progressive& p = *r->progressive;
@@ -91,7 +91,7 @@ void fill_cells(void* context, const SpanBatch& batch) {
   }
 }
 
-// Rows traced together count the same.
+// Rows traced together get equal shares.
 void add_row_costs(const Renderer& renderer, const Progressive& p, std::uint64_t took_ns) {
   if (!p.row_ns) return;
   const std::uint32_t bottom = band_end(renderer, p), count = bottom - p.row;
@@ -105,7 +105,7 @@ void mark_dirty(Progressive* p, std::uint32_t begin, std::uint32_t end) {
   p->dirty_end = std::max(p->dirty_end, end);
 }
 
-// Pixels of the batch that the coarsest grid has shown already: one of each tile.
+// Pixels of the batch that the coarsest grid has already shown: one per tile.
 std::uint32_t known_pixels(const Refinement& r) {
   if (r.progressive->step == kCoarsestStep || r.progressive->is_afresh || leaves_out_coarser(r)) return 0;
   return grid_side(r.batch_end, kTileSide) - grid_side(r.progressive->column, kTileSide);

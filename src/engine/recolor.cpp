@@ -55,7 +55,7 @@ Status change_material(Renderer* renderer, std::uint32_t index, const Material& 
   CHECK_EQ(renderer->opened_materials.count, renderer->materials.count);
   if (is_zero(renderer->opened_materials[index].emission) && !is_zero(material.emission))
     return failure("materials[%u] emits nothing in the scene: let it emit there, however little", index);
-  // Effects that another texture filter would call for count, too: it may be set later.
+  // Includes effects of other texture filters, which may be set later.
   Settings settings = renderer->settings;
   settings.texture_filter = TextureFilter::as_scene;
   const Material before = renderer->materials[index];

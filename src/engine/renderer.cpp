@@ -104,8 +104,8 @@ Status plan_with(Renderer* renderer, const AccelInfo& accel, const SceneStorage&
   return status;
 }
 
-// Chooses the accelerator and plans the memory with it: the requested one, else the one the scene was baked with, else
-// the default, else, if that does not fit, the first automatic one that does.
+// Chooses the accelerator and plans the memory with it: the requested one, or the one the scene was baked with, or the
+// default; if that does not fit, the first automatic one that does.
 Status choose_accel(Renderer* renderer, const SceneStorage& storage, const OutputNeed& output) {
   const AccelInfo* baked = accel_of(renderer->scene.accel);
   if (renderer->accel_info) {

@@ -14,31 +14,31 @@ struct Timings {
   double build_ms = 0, pose_ms = 0, refit_ms = 0, trace_ms = 0;
 };
 
-// How the last coherent frame went.
+// How the last coherent frame was traced.
 struct CoherenceState {
   bool planned = false;
   const char* unplanned_because = "coherence is off";
-  const char* whole_because = nullptr;  // all pixels were traced, and why; null: only those that may have changed
+  const char* whole_because = nullptr;  // why all pixels were traced; null: only those that may have changed
   std::uint64_t pixels_traced = 0;
-  ChangeCounts search;  // rays traced to find them
+  ChangeCounts search;  // rays traced to find these
   double follow_ms = 0, find_ms = 0, keep_ms = 0;
-  CoherenceTrial trial;  // of CoherenceMode::automatic
+  CoherenceTrial trial;  // for CoherenceMode::automatic
 };
 
 // The rows of a frame that this renderer may trace; shared_rows.h.
 struct SharedRows {
   std::uint32_t begin = 0, end = 0;
   bool records = false;             // the frame is followed
-  bool searched = false;            // for what may have changed
+  bool searched = false;            // the search for changes is complete
   std::uint32_t tile_row = 0;       // the next to search
   std::uint32_t known_rows = 0;     // of the last frame ...
   std::uint64_t known_changes = 0;  // ... and pixels to trace in these
-  Span parts[2 * kThreadCountMax];  // a part of a row, or several rows apart
+  Span parts[2 * kThreadCountMax];  // parts of a row, or rows far apart
 };
 
-// Deviations from the look that a scene brings or gets; initially none.
-enum class LightChoice { key, sun, none };  // of a scene without lights: default_lights(), default_sun(), ambient alone
-// Of the scene as it is; one that replaces it; none.
+// Overrides of the scene's look; initially none.
+enum class LightChoice { key, sun, none };  // in a scene without lights: default_lights(), default_sun(), ambient alone
+// Keep the scene's environment, replace it, or use none.
 enum class EnvironmentChoice { as_scene, given, none };
 struct Look {
   LightChoice light = LightChoice::key;
@@ -54,32 +54,32 @@ struct Renderer {
   Scene scene;
   EffectPlan effects;
   MemoryPlan memory;
-  const AccelInfo* accel_info = nullptr;  // null until planned: the plan chooses
+  const AccelInfo* accel_info = nullptr;  // null until the plan chooses it
   bool accel_is_fallback = false;         // the default did not fit
   Accel accel;
   Array<std::uint8_t> accel_data;  // writable if geometry moves
   Pose pose;
   Array<LightPoint> light_points;
-  std::uint32_t light_point_count_max = 0;  // as planned
-  std::uint32_t selected_light_max = 0;     // the same if source selection is planned, otherwise 0
-  Array<PointGroup> point_groups;           // of area lights
+  std::uint32_t light_point_count_max = 0;  // planned
+  std::uint32_t selected_light_max = 0;     // likewise if source selection is planned, otherwise 0
+  Array<PointGroup> point_groups;           // groups of area lights' points
   Array<std::uint8_t> point_order, point_place;
   Array<LightPolygon> light_polygons;
-  Array<LightNode> light_nodes;  // of source selection
+  Array<LightNode> light_nodes;  // for source selection
   Array<std::uint32_t> light_order;
   Array<LightEntry> light_entries;                  // search_entry_count() of them per thread
-  std::uint32_t light_count_max = 0;                // lights that may be set later; their points are planned for
+  std::uint32_t light_count_max = 0;                // lights that may be set later; their points are planned
   bool recolorable = false;                         // memory is reserved to change materials
-  Array<Material> materials;                        // the scene's, where they may change
-  Array<const Material> opened_materials;           // those that the scene was opened with; see recolor.h
-  EnvironmentLights* environment_lights = nullptr;  // if planned
+  Array<Material> materials;                        // the scene's materials, where they may change
+  Array<const Material> opened_materials;           // as the scene was opened; see recolor.h
+  EnvironmentLights* environment_lights = nullptr;  // null: not planned
   FrameData frame;
   Array<Span> spans;                           // one per scanline
-  Array<std::uint64_t> row_ns;                 // cost of each in the last frame
+  Array<std::uint64_t> row_ns;                 // cost of each scanline in the last frame
   Array<Tracer> tracers;                       // one per thread
-  Array<CellCorner> corners;                   // of selective rendering, two rows per thread; empty: not planned
+  Array<CellCorner> corners;                   // for selective rendering, two rows per thread; empty: not planned
   Array<InterleavedPixel> interleaved_pixels;  // kept_pixel_count() of them per thread; empty: not planned
-  Array<Vec3> window_pixels;                   // of undersampling, a window per thread; empty: not planned
+  Array<Vec3> window_pixels;                   // for undersampling, one window per thread; empty: not planned
   Array<std::uint8_t> window_states;
   Array<Vec3> image;  // width × height, linear
   Camera camera;
@@ -87,17 +87,17 @@ struct Renderer {
   EffectMask lit_mask = ~EffectMask(0);  // and the effects; ~0: not placed
   bool camera_overridden = false;
   std::uint32_t camera_index = 0;
-  std::uint32_t animation = 0;  // that plays; kNone: the pose at rest
+  std::uint32_t animation = 0;  // the one that plays; kNone: the rest pose
   float exposure = 1;
   Timings timings;
-  Coherence coherence;  // made if planned
+  Coherence coherence;  // set up if planned
   CoherenceState coherence_state;
   SharedRows shared_rows;
   Pace pace;                   // of an emulated device; default: none
-  Workers* workers = nullptr;  // null: only the caller's thread
+  Workers* workers = nullptr;  // null: the caller's thread alone
   Light default_lights[2];
   Box bounds;                // of all triangles, at time 0
-  DefaultView default_view;  // of a scene without cameras or lights
+  DefaultView default_view;  // for scenes without cameras or lights
   Look look;                 // set before plan_renderer()
 };
 
@@ -112,19 +112,19 @@ Status plan_renderer(Renderer* renderer, const SceneStorage& storage, const Outp
 // Third step: carves the arenas, builds the accelerator, poses the scene at time 0. Call it only once.
 Status build_renderer(Renderer* renderer);
 
-// Replaces the second and third step on a device that only shows what others render: has memory for the output alone
-// and renders nothing. The caller sets camera, exposure, effects and whatever else it uses of the scene.
+// Replaces the second and third step on a device that only shows frames rendered elsewhere: has memory for the output
+// alone and renders nothing. The caller sets camera, exposure, effects and whatever else it uses of the scene.
 Status plan_without_scene(Renderer* renderer, const OutputNeed& output);
 
 // Changes the settings that trade accuracy for time for the next frames, within the planned memory: samples, depth,
-// points per area light, cut-off, texture filter and normals may differ. If one is out of range or the lights would
-// need more points than were planned for, fails and changes nothing.
+// points per area light, cut-off, texture filter and normals may differ. Fails and changes nothing if one is out of
+// range or the lights would need more points than planned.
 Status change_settings(Renderer* renderer, const Settings& settings);
 
 // Sets the camera for the next frames.
 Status set_camera(Renderer* renderer, const Camera& camera);
 
-// Counters of the last frame, over all threads.
+// Sums the counters of the last frame over all threads.
 Tracer total_counts(const Renderer& renderer);
 
 // Measures exposure on a coarse grid of pixels: the scene's key value becomes middle grey [Reinhard et al. 2002,

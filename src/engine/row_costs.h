@@ -6,7 +6,7 @@
 
 namespace pocketray {
 
-// The pace of rendering these rows. `row_costs`: cost of each row of the picture relative to the mean; null: all equal.
+// The pace for rendering these rows. `row_costs`: each picture row's cost relative to the mean; null: all equal.
 inline Pace pace_of_rows(Pace pace, const float* row_costs, std::uint32_t row_begin, std::uint32_t row_end) {
   if (!row_costs || row_begin >= row_end) return pace;
   double sum = 0;

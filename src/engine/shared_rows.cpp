@@ -22,7 +22,7 @@ bool measure_row(void* context, std::uint32_t, std::uint32_t row) {
   return true;
 }
 
-// Of CoherenceMode::automatic, in pixels: a part of a frame has no time of its own to compare. Following and searching
+// For CoherenceMode::automatic, weighed in pixels: a part of a frame has no comparable time. Following and searching
 // cost less than a tenth of tracing the rows (coherence-report).
 void weigh(Renderer* renderer) {
   const SharedRows& rows = renderer->shared_rows;
@@ -46,7 +46,7 @@ void begin_shared_rows(Renderer* renderer, std::uint32_t row_begin, std::uint32_
   state->search = ChangeCounts();
   state->pixels_traced = 0;
   SharedRows* rows = &renderer->shared_rows;
-  state->trial.is_cold = false;  // no times are compared
+  state->trial.is_cold = false;  // times are not compared
   rows->records = begin_following(renderer);
   if (!rows->records) {
     state->trial.was_recorded = false;
@@ -164,7 +164,7 @@ void end_shared_rows(Renderer* renderer) {
     share_items(renderer->workers, 0, c->tile_rows, measure_row, renderer);
     weigh(renderer);
   } else {
-    forget_frame(c);  // cut short before it was searched, or traced by another source
+    forget_frame(c);  // cut short before the search was complete, or traced by another source
   }
   *rows = SharedRows();
 }

@@ -1,17 +1,17 @@
-// Span sources made from a list of spans: a whole frame, bands with progress, or the pixels that have changed.
+// Span sources made from a list of spans: a whole frame, bands with progress, or the changed pixels.
 #pragma once
 #include "engine/renderer.h"
 #include "engine/span_source.h"
 
 namespace pocketray {
 
-// Spans in any order, none twice; fastest with spans of neighbouring rows adjacent, from the top. The caller owns the
+// Spans in any order, none twice; fastest if spans of neighbouring rows are adjacent, from the top. The caller owns the
 // spans and their costs.
 struct SpanList {
   const Span* spans = nullptr;
   std::uint32_t span_count = 0;
   std::uint64_t* span_ns = nullptr;                                     // null: not measured
-  std::uint32_t batch_spans = ~0u;                                      // most spans per batch
+  std::uint32_t batch_spans = ~0u;                                      // maximum per batch
   void (*progress)(void* context, std::uint32_t done_count) = nullptr;  // called after each batch; null: none
   void* progress_context = nullptr;
 
@@ -23,7 +23,7 @@ SpanSource list_source(SpanList* list);
 
 // All spans of the renderer: one per scanline, timed in row_ns.
 SpanList whole_frame(Renderer* renderer);
-// The same in bands of rows, each just high enough to keep all threads busy.
+// All spans in bands of rows, each just high enough to keep all threads busy.
 SpanList row_bands(Renderer* renderer);
 
 // Pixels [begin, end) of a row.

@@ -10,7 +10,7 @@ std::uint64_t now_ns(const Renderer& renderer, const SpanSource& source) {
   return source.now_ns ? source.now_ns(source.context) : renderer.pace.clock->now_ns();
 }
 
-// Waits until the batch, begun at `begin_ns`, has taken as long as on the emulated device; returns how long that is.
+// Waits until the batch, begun at `begin_ns`, has taken as long as on the emulated device; returns that time.
 std::uint64_t keep_pace(Renderer* renderer, const SpanSource& source, const SpanBatch& batch, std::uint64_t begin_ns) {
   if (is_paced(renderer->pace)) {
     std::uint64_t pixel_count = span_pixel_count(batch.spans, batch.done_count);

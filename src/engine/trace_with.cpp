@@ -9,28 +9,28 @@
 namespace pocketray {
 namespace {
 
-// Of a strip that may be divided, chosen: 3 KiB of a thread's stack. Strips of more are ragged, as after a small
-// change.
+// Maximum number of spans of a strip that may be divided. Chosen: 3 KiB of a thread's stack. Larger strips are ragged,
+// as after a small change.
 constexpr std::uint32_t kDividedSpansMax = 512;
 
-// Spans that a thread takes at once, or the columns of them that lie in one of several parts.
+// Spans that a thread takes at once, or one part of them, split by columns.
 struct Piece {
   std::uint32_t begin, count;
   std::uint32_t part = 0, part_count = 1;
   std::uint32_t column_begin = 0, column_end = 0;  // of all parts
-  std::uint32_t side = 1;                          // columns of which a part has a multiple
+  std::uint32_t side = 1;                          // a part's width is a multiple of this many columns
 };
 
 struct SpanQueue {
   const TraceJob& job;
   std::uint32_t thread_count;
-  std::mutex mutex;  // of what follows
+  std::mutex mutex;  // protects the members below
   std::uint32_t next_span = 0;
-  Piece last = {0, 0};  // taken; if parts of it are left, they come next
+  Piece last = {0, 0};  // the last one taken; its remaining parts come next
   bool errand_waits = job.errand.run != nullptr;
 };
 
-// Divides a strip of tiles into about that many parts: whole packets if there is one for each thread.
+// Divides a strip of tiles into about `wanted` parts: whole packets if there is one for each thread.
 void divide(const Span* spans, std::uint32_t wanted, std::uint32_t thread_count, Piece* piece) {
   std::uint32_t begin = ~0u, end = 0, row_end = 0;
   for (std::uint32_t i = 0; i < piece->count; ++i) {
@@ -53,8 +53,8 @@ std::uint32_t column_of(const Piece& piece, std::uint32_t part) {
   return piece.column_begin + columns * part / piece.part_count / piece.side * piece.side;
 }
 
-// The next spans of the queue: those of a strip of tiles, towards the end in parts so that all threads finish together.
-// Parts are columns of the strip, since tiles of fewer rows would cost more per pixel.
+// Returns the queue's next spans: a strip of tiles, towards the end in parts so that all threads finish together. Parts
+// are columns of the strip, since tiles of fewer rows would cost more per pixel.
 Piece next_spans(const SpanQueue& queue) {
   const TraceJob& job = queue.job;
   const std::uint32_t left = job.span_count - queue.next_span;
@@ -66,7 +66,7 @@ Piece next_spans(const SpanQueue& queue) {
   return piece;
 }
 
-// False: there is none, or the job was stopped. Strips of which a part is taken are completed.
+// Returns false if no piece is left, or the job was stopped. Strips that were begun are completed.
 bool take_piece(SpanQueue* queue, Piece* piece) {
   const TraceJob& job = queue->job;
   Piece* last = &queue->last;

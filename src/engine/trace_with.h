@@ -1,4 +1,4 @@
-// Spans divided among threads.
+// Divides spans among threads.
 #pragma once
 #include "engine/span_source.h"
 #include "engine/workers.h"
@@ -17,7 +17,7 @@ struct TraceJob {
   Errand errand = {};                          // done by the first thread that is free
 };
 
-// Traces all spans and returns how many were done. If `workers` is null, the caller's thread does all of it.
+// Traces all spans and returns how many were done. If `workers` is null, the caller's thread does everything.
 std::uint32_t trace_with(Workers* workers, const TraceJob& job);
 
 }  // namespace pocketray

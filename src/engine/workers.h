@@ -1,4 +1,4 @@
-// Threads that share the work of a frame. Started before the seal; the picture does not depend on their number.
+// Threads that share the work of a frame. Started before the seal; their number does not affect the picture.
 #pragma once
 #include <cstdint>
 
@@ -6,18 +6,18 @@ namespace pocketray {
 
 struct Workers;
 
-// Starts thread_count − 1 threads in addition to the caller's, at most kThreadCountMax in total. The system may give
-// fewer; worker_thread_count() tells. Null if it gives none or one thread is enough.
+// Starts thread_count − 1 threads in addition to the caller's, at most kThreadCountMax in total. The system may grant
+// fewer; see worker_thread_count(). Returns null if it grants none or one thread is enough.
 Workers* start_workers(std::uint32_t thread_count);
 void stop_workers(Workers* workers);
-// Including the caller's.
+// Includes the caller's thread.
 std::uint32_t worker_thread_count(const Workers* workers);
 // Calls work(context, thread) once on each thread, the caller's being 0, and returns when all are done. If `workers` is
-// null, the caller's thread does all of it.
+// null, the caller's thread does everything.
 void run_with(Workers* workers, void (*work)(void* context, std::uint32_t thread), void* context);
 
 // Calls take(context, thread, item) for each item of [begin, end), on whichever thread is free. Returns when all are
-// done, or each thread has left because take() returned false: the first item that none took.
+// done, or every thread has left because take() returned false: the first item that none took.
 std::uint32_t share_items(Workers* workers, std::uint32_t begin, std::uint32_t end,
                           bool (*take)(void* context, std::uint32_t thread, std::uint32_t item), void* context);
 

@@ -17,7 +17,7 @@ struct Emitter {
   std::uint32_t triangle;
   bool parallelogram;
   double area;
-  std::uint32_t first_vertex[2];  // of each triangle, the vertex that is a
+  std::uint32_t first_vertex[2];  // per triangle: the vertex that is a
 };
 
 double triangle_area(const FrameData& frame, std::uint32_t triangle) {
@@ -32,7 +32,7 @@ double triangle_area(const FrameData& frame, std::uint32_t triangle) {
   return std::ldexp(0.5 * static_cast<double>(length(cross(e1, e2))), 2 * exponent);
 }
 
-// The lamp's emitter that starts at a triangle. The halves of a parallelogram may begin at any of their vertices.
+// Returns the lamp's emitter that starts at a triangle. Halves of a parallelogram may begin at any of their vertices.
 Emitter emitter_at(const FrameData& frame, const Lamp& lamp, std::uint32_t triangle) {
   const Scene& scene = *frame.scene;
   Emitter e = {triangle, false, triangle_area(frame, triangle), {0, 0}};
@@ -67,7 +67,7 @@ void each_emitter(const FrameData& frame, const Lamp& lamp, Visit visit) {
 }
 
 // Position of a cell's point on the emitter: barycentrics in the triangle, or in one half of the parallelogram. It is
-// the centroid of the cell's image, so that the mean of the points is the emitter's own centroid.
+// the centroid of the cell's image, so the mean of the points is the emitter's centroid.
 void place_on_emitter(const Emitter& e, const Cell& cell, std::uint32_t* triangle, float* u, float* v) {
   *triangle = e.triangle;
   float x = static_cast<float>(0.5 * (cell.x_begin + cell.x_end)), y = static_cast<float>(cell.y);
@@ -95,9 +95,9 @@ Vec3 surface_point(const FrameData& frame, std::uint32_t triangle, float u, floa
   return a * (1 - u - v) + b * u + c * v;
 }
 
-// Barycentric coordinates of the point of a triangle nearest to p [Ericson 2005, "Real-Time Collision Detection",
-// sec. 5.1.5], in double precision as the fourth powers of lengths exceed the range of float. Returns the squared
-// distance.
+// Barycentric coordinates of the triangle's point nearest to p [Ericson 2005, "Real-Time
+// Collision Detection", sec. 5.1.5], in double precision since fourth powers of lengths exceed
+// the range of float. Returns the squared distance.
 double nearest_point(const FrameData& frame, std::uint32_t triangle, const Vec3& p, float* u, float* v) {
   const Triangle& t = frame.scene->triangles[triangle];
   const Vec3 &a = frame.positions[t.vertex(0)], &b = frame.positions[t.vertex(1)], &c = frame.positions[t.vertex(2)];
@@ -151,13 +151,13 @@ LightPoint point_on(const FrameData& frame, std::uint32_t triangle, float u, flo
   return p;
 }
 
-// The points of a light stand for equal shares of its area, taken in the order of its emitters. A slice of an emitter
-// is a part of one share, or of several shares whole. Its x is the first coordinate of a Cell, in which area is
-// uniform.
+// A light's points represent equal shares of its area, taken in the order of its
+// emitters. A slice of an emitter is a part of one share, or several whole shares. Its x
+// is the first coordinate of a Cell, in which area is uniform.
 struct Slice {
   std::uint32_t share, share_count;
   bool whole;
-  double share_part;  // of one share
+  double share_part;  // fraction of one share
   double x_begin, x_end;
 };
 
@@ -165,7 +165,7 @@ template <class Visit>
 void each_slice(const FrameData& frame, const Lamp& lamp, double area_total, std::uint32_t n, Visit visit) {
   CHECK(area_total > 0);
   CHECK_GE(n, 1u);
-  // A border that misses one between shares by no more than the sums' rounding is taken as that border.
+  // Snaps borders that miss one between shares by no more than the rounding of the sums.
   auto in_shares = [&](double area) {
     const double shares = area / area_total * n, nearest = std::floor(shares + 0.5);
     return std::fabs(shares - nearest) < 1e-6 ? nearest : shares;
@@ -186,7 +186,7 @@ void each_slice(const FrameData& frame, const Lamp& lamp, double area_total, std
   });
 }
 
-// The point of the surface nearest to the centroid of a share that several emitters make up.
+// The surface point nearest to the centroid of a share that spans several emitters.
 struct NearestPoint {
   Vec3 centroid;
   std::uint32_t triangle;
@@ -205,12 +205,12 @@ void approach(const FrameData& frame, const Emitter& e, NearestPoint* nearest) {
 
 // Moves a point of a bent lamp off its triangle's edges, where rounding could let a neighbour hide it.
 void keep_off_edges(float* u, float* v) {
-  constexpr float kLeast = 0x1p-6f;  // chosen: of the triangle's height; more than rounding, less than is seen
+  constexpr float kLeast = 0x1p-6f;  // chosen: of the triangle's height; more than rounding, less than is visible
   if (std::min(std::min(*u, *v), 1 - *u - *v) >= kLeast) return;
   *u += (1 / 3.0f - *u) * (3 * kLeast), *v += (1 / 3.0f - *v) * (3 * kLeast);
 }
 
-// Points of the shares that a slice covers whole.
+// Places the points of the shares that lie entirely within a slice.
 void place_whole_shares(const FrameData& frame, const Emitter& e, const Slice& slice, double area, LightPoint* points) {
   CHECK(slice.whole);
   const double width = slice.x_end - slice.x_begin;
@@ -232,15 +232,15 @@ double lamp_area(const FrameData& frame, const Lamp& lamp) {
   return total;
 }
 
-// A share that several emitters make up has the point of its surface nearest to its centroid. Where the centroid lies
-// on another share, as it may in a flat lamp, the point is there: flat lamps keep their centre.
+// A share that spans several emitters is represented by the point of its own surface nearest to its centroid. If the
+// centroid lies on another share, as it may in a flat lamp, it is the point itself: flat lamps keep their centre.
 std::uint32_t place_area_light(const FrameData& frame, const Lamp& lamp, LightPoint* points) {
   const std::uint32_t n = frame.settings.points_per_area_light;
   CHECK(n >= 1 && n <= kPointsPerAreaLightMax);
   const double total = lamp_area(frame, lamp);
   if (!(total > 0)) return 0;
   const double area = total / n;
-  // 1. The centroids of shares in parts.
+  // 1. Centroids of the shares that span several slices.
   for (std::uint32_t i = 0; i < n; ++i) points[i].position = {0, 0, 0};
   each_slice(frame, lamp, total, n, [&](const Emitter& e, const Slice& slice) {
     if (slice.whole) return place_whole_shares(frame, e, slice, area, points);
@@ -249,7 +249,7 @@ std::uint32_t place_area_light(const FrameData& frame, const Lamp& lamp, LightPo
     place_on_emitter(e, {slice.x_begin, slice.x_end, 0.5}, &triangle, &u, &v);
     points[slice.share].position += surface_point(frame, triangle, u, v) * static_cast<float>(slice.share_part);
   });
-  // 2. Their nearest points, of their own surface and if that is not where the centroid is, of all of it.
+  // 2. Nearest points to them: on the share's own surface or, if the centroid is not on it, on the whole lamp.
   const double there = area * 1e-6;  // chosen: a thousandth of the share's size
   NearestPoint nearest = {};
   auto settle = [&](std::uint32_t share) {

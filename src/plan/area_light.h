@@ -8,8 +8,8 @@ namespace pocketray {
 // Area of the lamp as posed.
 double lamp_area(const FrameData& frame, const Lamp& lamp);
 
-// Fills `points`, Settings::points_per_area_light of them, each with an equal share of the lamp's area; returns
-// their number, 0 if it has no area. Their mean is the centre of the light if that is flat. Allocates nothing.
+// Fills `points`, Settings::points_per_area_light of them, each with an equal share of the lamp's area; returns their
+// number, 0 without area. The mean of a flat lamp's points is its centre. Allocates nothing.
 std::uint32_t place_area_light(const FrameData& frame, const Lamp& lamp, LightPoint* points);
 
 }  // namespace pocketray

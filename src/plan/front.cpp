@@ -17,7 +17,7 @@ void drop(Front* front, std::uint32_t index) {
   --front->count;
 }
 
-// The effect that a choice asks for; 0 for auto and none.
+// Returns the effect that a choice asks for; 0 for auto and none.
 EffectMask effect_of(IndirectChoice choice) {
   for (const EffectRow& row : kEffectList)
     if (has(kIndirectEffects, row.effect) && indirect_choice(row.effect) == choice) return bit(row.effect);
@@ -157,7 +157,7 @@ void drop_what_scene_ignores(Front* front, EffectMask effects) {
       if (row.seen_with != kAlways && !(row.seen_with & seen))
         row.field.set(&front->candidates[i], row.field.get(usual));
   }
-  for (std::uint32_t i = 1; i < front->count;) {  // of equal qualities the first is the cheapest
+  for (std::uint32_t i = 1; i < front->count;) {  // the first of equal qualities is the cheapest
     std::uint32_t k = 0;
     while (k < i && !same_quality(front->candidates[k], front->candidates[i])) ++k;
     if (k < i)

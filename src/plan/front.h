@@ -6,8 +6,8 @@
 //   samples=4 depth=8 area-lights=16 cut-off=0.5 texture-filter=scene normals=scene indirect=auto
 //   reconstruction=bicubic virtual-lights=64 flip=0.0123 ns=812
 //
-// The names are those of the command line's options; an unmeasured error is omitted. Empty lines and lines that begin
-// with # are ignored.
+// Names are those of the command line's options; an unmeasured error is omitted. Empty lines and lines that begin with
+// # are ignored.
 #pragma once
 #include <algorithm>
 #include <cstddef>
@@ -26,7 +26,7 @@ constexpr float kErrorUnknown = std::numeric_limits<float>::quiet_NaN();
 
 struct Candidate : Quality {
   float flip = kErrorUnknown;  // mean ꟻLIP of the picture, in [0, 1]; NaN: not measured
-  float ns_per_pixel = 1;      // average over a frame; prices measured elsewhere are only comparable with each other
+  float ns_per_pixel = 1;      // average over a frame; comparable only with prices measured alongside
 };
 
 struct Front {
@@ -34,36 +34,36 @@ struct Front {
   std::uint32_t count = 0;
 };
 
-// The candidate of the same quality, or null.
+// Returns the candidate with this quality, or null.
 const Candidate* find_candidate(const Front& front, const Quality& quality);
-// Clamped to the limits of a file.
+// Clamps the price to the limits of a file.
 float clamped_price(double ns_per_pixel);
 Candidate candidate_of(const Quality& quality);
-// The settings with this quality.
+// Returns the settings with this quality.
 Settings with_candidate(const Settings& settings, const Quality& quality);
 
-// Whether every error of the front was measured. If not, the order is that of accuracy, whatever the prices.
+// Returns whether every error of the front was measured; otherwise the order is by accuracy, whatever the prices.
 bool errors_known(const Front& front);
 void sort_by_price(Front* front);
-// If all errors are known: sorts by price and drops candidates that are neither cheaper nor more accurate than another.
+// If all errors are known, sorts by price and drops candidates that are neither cheaper nor more accurate than another.
 void sort_front(Front* front);
-// Adopts prices from `measured` for the candidates in both fronts; scales the other prices by the mean ratio of these.
-// Candidates and their order do not change. Returns false and changes nothing if the fronts have no candidate in
-// common.
+// Adopts prices from `measured` for candidates in both fronts; scales the others by the
+// mean ratio. Candidates and their order do not change. Returns false and changes
+// nothing if the fronts have no candidate in common.
 bool adopt_prices(Front* front, const Front& measured);
 
-// The choice when nothing was measured: from the least to the most that a device might do, each candidate at least as
-// accurate as the one before. Prices are guesses.
+// The default front when nothing was measured: from the least to the most that a device might do, each candidate at
+// least as accurate as the one before. Prices are guesses.
 Front builtin_front();
-// Drops candidates that make the same picture as another, given the effects that are on: area lights if there are none,
-// and so on.
+// Drops candidates that make the same picture as another with these effects, such as those that differ in area lights
+// where there are none.
 void drop_what_scene_ignores(Front* front, EffectMask effects);
 
 // Reads a file's bytes, however malformed: all candidates in file order. Errors name the line; on failure *front is
 // empty.
 Status parse_front(const void* bytes, std::size_t byte_count, Front* front);
 
-// The longest line written: "name=value " for each setting, error and price, and the end.
+// Upper bound of a written line: "name=value " for each setting, error and price, and the end.
 constexpr std::size_t front_line_bytes() {
   constexpr std::size_t kRealBytes = 17;  // with %.9g
   std::size_t bytes = sizeof "flip= ns=" + 2 * kRealBytes;
@@ -76,15 +76,15 @@ constexpr std::size_t front_line_bytes() {
 }
 
 // Writes the file into `text`, always terminated; kFrontTextMax bytes hold any front. Returns its length without the
-// terminator. parse_front() reads the same bits back.
+// terminator. parse_front() restores the same bits.
 constexpr std::size_t kFrontLineMax = front_line_bytes();
 constexpr std::size_t kFrontTextMax = (kFrontCandidateMax + 1) * kFrontLineMax;
 std::size_t format_front(const Front& front, char* text, std::size_t size);
-// The quality alone, as in the file: "samples=4 depth=8 …". Terminated.
+// Writes only the quality, as in the file: "samples=4 depth=8 …". Terminated.
 void format_quality(const Quality& quality, char* text, std::size_t size);
-// The settings with a display name: "samples 4 depth 8 …". Terminated.
+// Writes the settings that have a display name: "samples 4 depth 8 …". Terminated.
 void format_hud_quality(const Quality& quality, char* text, std::size_t size);
-// The differences from `before` in words: "samples 4 to 1, depth 8 to 2", or "nothing".
+// Writes the differences in words: "samples 4 to 1, depth 8 to 2", or "nothing".
 void describe_change(const Quality& before, const Quality& after, char* text, std::size_t size);
 
 }  // namespace pocketray

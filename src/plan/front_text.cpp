@@ -1,4 +1,4 @@
-// Fronts as text. A file's bytes are hostile: nothing beyond them is read, every length is bounded.
+// Fronts as text. A file's bytes are hostile: nothing is read beyond them, every length is bounded.
 #include <cmath>
 #include <cstdarg>
 #include <cstdio>
@@ -13,11 +13,11 @@ namespace {
 
 constexpr char kFirstLine[] = "pocketray-front 1";
 constexpr char kFirstWord[] = "pocketray-front";
-// Settings come first, in the order of their list.
+// Settings come first, in list order.
 enum Key : int { flip = kSettingCount, ns, kKeyCount };
 static_assert(kKeyCount <= 32, "one bit per key");
-// What only whole frames have, and what came last, is left out at its default, so that fronts from before it are read,
-// and read by programs from before it.
+// Settings that only whole frames have, and the newest one, are omitted at their defaults, so that older fronts can be
+// read, and older programs can read new ones.
 bool may_be_absent(const SettingRow& row) {
   return row.wire_bytes == 0 || row.field.get == get_member<&Quality::compensation>;
 }
@@ -32,7 +32,7 @@ bool equals(const Text& text, const char* word) {
   return std::strlen(word) == text.count && std::memcmp(word, text.begin, text.count) == 0;
 }
 
-// Removes the text up to the first `end`, and the end itself, from the front of *rest; returns it without the end.
+// Removes the text up to and including the first `end` from the front of *rest; returns it without the end.
 Text cut(Text* rest, char end) {
   const void* at = rest->count ? std::memchr(rest->begin, end, rest->count) : nullptr;
   std::size_t count = at ? static_cast<std::size_t>(static_cast<const char*>(at) - rest->begin) : rest->count;
@@ -65,7 +65,7 @@ bool read_real(const Text& text, float* value) {
   return *end == 0 && end != digits && std::isfinite(*value);
 }
 
-// False if the text is not a value of the setting's kind; check_setting() checks the limits.
+// Returns false if the text is not a value of the setting's kind; check_setting() checks the limits.
 bool read_setting(const SettingRow& row, const Text& text, double* value) {
   std::uint32_t count;
   float real;
@@ -87,7 +87,7 @@ bool read_value(int key, const Text& text, Candidate* c, double* setting) {
   return read_setting(kSettingList[key], text, setting);
 }
 
-// Safe for messages: a file may contain anything.
+// Makes a file's text safe to print in messages: it may contain anything.
 struct Printable {
   char text[41];
   explicit Printable(const Text& t) {

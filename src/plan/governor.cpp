@@ -10,22 +10,22 @@
 namespace pocketray {
 namespace {
 
-// Natural logarithms. Chosen by tests/plan/governor_test.cpp so that 95 % of the frames stay within 110 % of the
-// budget.
+// Natural logarithms. Chosen by tests/plan/governor_test.cpp to keep 95 % of
+// the frames within 110 % of the budget.
 constexpr double kLate = 0.0953;                           // 1.1
 constexpr double kLimit = 0.077;                           // 1.08: leave a candidate expected to exceed it,
-constexpr double kReturn = 0.03;                           // and go to one expected to stay below this
+constexpr double kReturn = 0.03;                           // and return to one expected to stay below this
 constexpr double kUnsettled = 0.1;                         // added to the load while few frames have been seen
-constexpr double kDoubtGrowth = 0.001, kDoubtGrown = 0.2;  // per frame for candidates that do not run; its limit
-constexpr double kDoubtLeast = 0.02;                       // least doubt that makes a trial worthwhile
+constexpr double kDoubtGrowth = 0.001, kDoubtGrown = 0.2;  // per frame, for candidates that do not run; its limit
+constexpr double kDoubtLeast = 0.02;                       // minimum doubt that makes a trial worthwhile
 constexpr double kCorrectionMax = 3.5;                     // a factor of 33, far above the doubt of a guessed price
-// Of fewer than kFewFrames loads, the highest decides; from kManyFrames on, of which two are 5 %, more may exceed it.
+// Uses the maximum below kFewFrames loads; from kManyFrames on, of which two are 5 %, more may exceed the result.
 constexpr std::uint32_t kFewFrames = 4, kManyFrames = 40;
-// For kAttributedFrames after a switch, a surprise is the candidate's. Late frames are averaged over kLateFrames,
-// enough to tell 3 % from 5.
+// A surprise within kAttributedFrames after a switch is attributed to the candidate. Late frames are averaged over
+// kLateFrames, enough to tell 3 % from 5.
 constexpr std::uint32_t kAttributedFrames = 3, kLateFrames = 128;
-// In frames. Of candidates that never ran, one in kTrialPause frames is tried; those that ran and did not fit take up
-// at most one in kAgainPauseMin, and ever fewer.
+// In frames. A candidate that never ran is tried every kTrialPause frames; those that ran and did not fit take up at
+// most one frame in kAgainPauseMin, and ever fewer.
 constexpr std::uint32_t kTrialPause = 8, kAgainPauseMin = 64, kAgainPauseMax = 1024;
 
 double log_price(const Governor& g, std::uint32_t i) {
@@ -48,7 +48,7 @@ double middle_load(const Governor& g) {
 
 constexpr std::uint32_t kRankMax = 4;
 
-// The rank-th highest, counted from 1.
+// Returns the rank-th highest value, counted from 1.
 double highest(const double* values, std::uint32_t count, std::uint32_t rank) {
   CHECK(rank >= 1 && rank <= kRankMax);
   CHECK_LE(count, kLoadFrameCount);
@@ -66,7 +66,7 @@ double high_load(const Governor& g) {
   std::uint32_t count = load_count(g);
   if (count == 0) return kUnsettled;
   if (count < kFewFrames) return highest(g.loads, count, 1) + kUnsettled;
-  // Of 64 loads, 3, 2 or 1 exceed it: 4.7, 3.1 or 1.6 %, the fewer the more frames have been late.
+  // 3, 2 or 1 of 64 loads exceed it: 4.7, 3.1 or 1.6 %, fewer the more frames have been late.
   std::uint32_t rank = count < kManyFrames ? 2 : g.late_share < 0.02 ? 4 : g.late_share < 0.03 ? 3 : 2;
   double high = highest(g.loads, count, rank);
   if (count >= kManyFrames) high = std::min(high, middle_load(g) + highest(g.rises, count, rank));
@@ -74,7 +74,7 @@ double high_load(const Governor& g) {
   return std::max(high, std::min(last_load(g), before));
 }
 
-// Whether a is more accurate.
+// Returns whether a is more accurate than b.
 bool is_better(const Governor& g, std::uint32_t a, std::uint32_t b) {
   float error_a = g.front.candidates[a].flip, error_b = g.front.candidates[b].flip;
   if (std::isnan(error_a) || std::isnan(error_b) || error_a == error_b) return a > b;
@@ -88,8 +88,8 @@ std::uint32_t fastest(const Governor& g) {
   return best;
 }
 
-// The best candidate expected to stay within a limit, or the fastest if none is. The current one has a higher limit, so
-// that of two borderline candidates it is kept.
+// Returns the best candidate expected to stay within its limit, or the fastest if none is. The current candidate's
+// limit is higher, so it is kept over a borderline alternative.
 std::uint32_t choose(const Governor& g) {
   double load = high_load(g), budget = det_log(g.budget_ns);
   std::uint32_t best = g.front.count;
@@ -102,7 +102,7 @@ std::uint32_t choose(const Governor& g) {
   return best < g.front.count ? best : fastest(g);
 }
 
-// Better candidates that fit if their price is wrong in our favour, and of these the cheapest. front.count: none.
+// Returns the cheapest of the better candidates that would fit if their price is overestimated; front.count: none.
 std::uint32_t choose_trial(const Governor& g) {
   double load = high_load(g), budget = det_log(g.budget_ns);
   std::uint32_t best = g.front.count;
@@ -114,7 +114,7 @@ std::uint32_t choose_trial(const Governor& g) {
   return best;
 }
 
-// Candidates that never ran are tried soon; those that ran and did not fit are retried after ever longer pauses.
+// Tries new candidates soon, and retries those that did not fit after ever longer pauses.
 std::uint32_t try_another(Governor* g) {
   std::uint32_t trial = choose_trial(*g);
   g->frames_to_trial = kTrialPause;
@@ -127,7 +127,7 @@ std::uint32_t try_another(Governor* g) {
   return trial;
 }
 
-// Corrections are relative: their mean is moved into the loads.
+// Corrections are relative: moves their mean into the loads.
 void center_corrections(Governor* g) {
   double sum = 0;
   int count = 0;
@@ -143,11 +143,11 @@ void center_corrections(Governor* g) {
   g->reference_high += mean;
 }
 
-// After a switch: attributes to the candidate the load that earlier loads do not explain.
+// After a switch, attributes the load that earlier loads do not explain to the candidate.
 void attribute(Governor* g, double load) {
   std::uint32_t i = g->current;
   double surprise = load - std::max(g->reference_low, std::min(g->reference_high, load));
-  // Their mean at first, then a fifth of each: chosen, so that a price can still follow the scene.
+  // A running mean at first, then a fifth of each: chosen, so that a price can still follow the scene.
   double share = std::max(0.2, 1.0 / (g->switches_to[i] + g->frames_at_current - 1));
   double moved =
       std::max(-kCorrectionMax, std::min(kCorrectionMax, g->corrections[i] + share * surprise)) - g->corrections[i];
@@ -223,7 +223,7 @@ void observe_frame(Governor* g, double frame_ns) {
   std::uint32_t at = g->load_count++ % kLoadFrameCount;
   g->loads[at] = load;
   g->load_sum += load;
-  if (g->load_count == 2) g->loads[0] = std::min(g->loads[0], load);  // the very first frame often runs cold
+  if (g->load_count == 2) g->loads[0] = std::min(g->loads[0], load);  // the first frame often runs cold
   g->rises[at] = g->load_count > 1 ? load - middle : 0;
   if (g->frames_at_current++ < kAttributedFrames) attribute(g, load);
   for (std::uint32_t i = 0; i < g->front.count; ++i)

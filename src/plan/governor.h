@@ -1,11 +1,11 @@
-// The governor chooses the candidate of a front for the next frame, so that frames keep a time budget with the least
+// The governor chooses the front's candidate for the next frame, so that frames keep a time budget with the least
 // error. Pure: the caller measures the times. Per frame: next_candidate(); render; observe_frame().
 //
 // A frame of candidate i is expected to take price_i × pixels × e^(load + correction_i). The load is common to all
-// candidates: the machine, the view. It is estimated from the last frames: choices use the second highest load, so that
-// a single outlier is ignored, a lasting change is met at the second frame, and about 1 frame in 25 takes longer than
-// assumed. The correction is the error of a candidate's price, learnt on switching to it. A candidate with an uncertain
-// price is tried for one frame if it would be the better choice and may well fit.
+// candidates: machine and view. It is estimated from the last frames; choices use the second highest load, so a single
+// outlier is ignored, a lasting change is met at the second frame, and about 1 frame in 25 takes longer than assumed.
+// The correction is the error of a candidate's price, learnt on switching to it. A candidate with an uncertain price is
+// tried for one frame if it would be the better choice and may well fit.
 #pragma once
 #include "plan/front.h"
 
@@ -18,8 +18,8 @@ struct Governor {
   double budget_ns = 0, pixel_count = 0;
   // All logarithms.
   double loads[kLoadFrameCount] = {};  // of the last frames, a ring
-  double rises[kLoadFrameCount] = {};  // of each load over the median of those before it
-  double late_share = 0.03;            // over roughly the last hundred frames; at first, as if no more may be late
+  double rises[kLoadFrameCount] = {};  // each load minus the median of those before it
+  double late_share = 0.03;            // over about the last hundred frames; starts as if no more frames may be late
   std::uint32_t load_count = 0;        // frames seen; the ring holds the latest of them
   double load_sum = 0;                 // over all frames
   double corrections[kFrontCandidateMax] = {};
@@ -27,10 +27,10 @@ struct Governor {
   bool ran[kFrontCandidateMax] = {};
   std::uint32_t switches_to[kFrontCandidateMax] = {};
   std::uint32_t current = 0;
-  std::uint32_t frames_at_current = 0;           // since the switch to it
+  std::uint32_t frames_at_current = 0;           // since the last switch
   double reference_low = 0, reference_high = 0;  // loads before the switch
-  bool on_trial = false;                         // the current candidate, for one frame
-  std::uint32_t home = 0;                        // the current candidate apart from trials
+  bool on_trial = false;                         // the current candidate runs for one frame only
+  std::uint32_t home = 0;                        // the candidate that trials return to
   std::uint32_t frames_to_trial = 0, trial_pause = 0;
   std::uint32_t switch_count = 0;
 };
@@ -43,18 +43,18 @@ void start_governor(const Front& front, double budget_ns, double pixel_count, do
 // Sets the doubt of a single candidate, before its first frame.
 void set_doubt(Governor* governor, std::uint32_t candidate, double doubt);
 
-// The candidate of governor->front for the next frame.
+// Returns the index in governor->front of the candidate for the next frame.
 std::uint32_t next_candidate(Governor* governor);
-// Uses another candidate for the next frame.
+// Forces another candidate for the next frame.
 void force_candidate(Governor* governor, std::uint32_t candidate);
-// Duration of that frame, from its preparation until its pixels are packed. Ignores NaN, zero and negative times.
+// Reports that frame's duration, from preparation until its pixels are packed. Ignores NaN, zero and negative times.
 void observe_frame(Governor* governor, double frame_ns);
 
-// Expected duration of a frame of the candidate, at the median of the last loads.
+// Expected duration of the candidate's frames, at the median of the last loads.
 double expected_ns(const Governor& governor, std::uint32_t candidate);
-// Whether even the fastest candidate is expected to exceed the budget.
+// Returns whether even the fastest candidate is expected to exceed the budget.
 bool budget_too_small(const Governor& governor);
-// A pixel's price as learnt, at the mean load of all frames.
+// Learnt price of a pixel, at the mean load of all frames.
 double learnt_price(const Governor& governor, std::uint32_t candidate);
 
 }  // namespace pocketray

@@ -11,7 +11,7 @@ namespace {
 
 static_assert(kDividedLampsMax * kPointsPerAreaLightMax <= kPointLightCountMax, "all lamps, with all points");
 
-constexpr double kUnevenMax = 0x1p-12;  // how far a piece may leave its plane, relative to its size
+constexpr double kUnevenMax = 0x1p-12;  // maximum deviation of a piece from its plane, relative to its size
 
 Vec3d corner(const Scene& scene, std::uint32_t triangle, std::uint32_t i) {
   return to_double(scene.positions[scene.triangles[triangle].vertex(i)]);
@@ -22,14 +22,14 @@ Vec3d area_vector(const Scene& scene, std::uint32_t triangle) {
   return cross(corner(scene, triangle, 1) - a, corner(scene, triangle, 2) - a);
 }
 
-// Height of a point over a triangle's plane, relative to its distance or to the triangle's size, whichever is larger.
+// Height of a point over a triangle's plane, relative to the larger of its distance and the triangle's size.
 double height_over(const Scene& scene, std::uint32_t triangle, const Vec3d& point) {
   const Vec3d normal = area_vector(scene, triangle), offset = point - corner(scene, triangle, 0);
   const double area = length(normal);
   return dot(offset, normal) / area / std::max(length(offset), std::sqrt(area));
 }
 
-// Whether a triangle lies in the plane of another, and faces the same way.
+// Returns whether a triangle lies in another's plane and faces the same way.
 bool is_in_plane(const Scene& scene, std::uint32_t piece, std::uint32_t triangle) {
   if (!(dot(area_vector(scene, piece), area_vector(scene, triangle)) > 0)) return false;
   for (std::uint32_t i = 0; i < 3; ++i)
@@ -44,7 +44,7 @@ bool rests(const Scene& scene, std::uint32_t triangle) {
   return true;
 }
 
-// Whether no triangle of the material reaches over the plane of any piece.
+// Returns whether no triangle of the material reaches above the plane of any piece.
 bool is_convex(const Scene& scene, const Lamp* pieces, std::uint32_t count) {
   for (std::uint32_t p = 0; p < count; ++p) {
     for (std::uint32_t t = pieces[0].begin; t < scene.triangles.count; ++t) {
@@ -56,7 +56,7 @@ bool is_convex(const Scene& scene, const Lamp* pieces, std::uint32_t count) {
   return true;
 }
 
-// Adds the pieces of a material, if it is to be divided. Returns the number of lamps that it then is.
+// Adds the pieces of a material that is to be divided. Returns the number of lamps that it becomes.
 std::uint32_t divide(const Scene& scene, std::uint32_t material, LampPieces* all) {
   Lamp pieces[kPiecesMax];
   std::uint32_t count = 0;

@@ -1,4 +1,4 @@
-// The area lights of a scene: its emissive materials, those with few flat pieces piece by piece.
+// The area lights of a scene: its emissive materials, divided into pieces if these are few and flat.
 #pragma once
 #include "scene/scene.h"
 
@@ -6,13 +6,13 @@ namespace pocketray {
 
 struct Lamp {
   std::uint32_t material;
-  std::uint32_t piece;  // a triangle in whose plane the others are, at time 0; kNone: all triangles of the material
-  std::uint32_t begin, end;  // range of the triangles among which its own are
+  std::uint32_t piece;  // a triangle in the plane of all the others, at time 0; kNone: all triangles of the material
+  std::uint32_t begin, end;  // range that contains the lamp's triangles
 };
 
-// Divided, so that each piece has a polygon: materials of two to kPiecesMax planes whose triangles rest; of them,
-// convex bodies of more than kConvexPiecesMax, such as bulbs, are not, whose pieces do not light each other. If that
-// would make more lamps than there can be whatever the points of each, no material is divided.
+// Materials of two to kPiecesMax planes whose triangles rest are divided, so that each piece has a polygon. Exempt are
+// convex bodies of more than kConvexPiecesMax pieces, such as bulbs, whose pieces do not light each other. If the lamps
+// would exceed the limit at any number of points each, no material is divided.
 constexpr std::uint32_t kPiecesMax = 16, kConvexPiecesMax = 6;  // chosen: a box
 constexpr std::uint32_t kDividedLampsMax = 16;
 
@@ -21,10 +21,10 @@ struct LampPieces {
   std::uint32_t count = 0;       // 0: no material is divided
 };
 
-// Where materials are lamps as `materials` says, which has one for each of the scene's. O(triangles).
+// Finds the pieces of lamps whose emission is in `materials`, one for each of the scene's materials. O(triangles).
 LampPieces find_lamp_pieces(const Scene& scene, Array<const Material> materials);
 
-// Whether a triangle of the scene is a part of the lamp.
+// Returns whether a triangle of the scene belongs to the lamp.
 bool is_part_of(const Scene& scene, const Lamp& lamp, std::uint32_t triangle);
 
 inline bool is_emissive(const Material& m) { return !is_zero(m.emission); }

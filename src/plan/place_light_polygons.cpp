@@ -12,7 +12,7 @@ namespace pocketray {
 namespace {
 
 constexpr std::uint32_t kTrianglesMax = 16;  // of one polygon
-constexpr double kUnevenMax = 0x1p-12;       // how far it may leave its plane, relative to its size
+constexpr double kUnevenMax = 0x1p-12;       // maximum deviation from its plane, relative to its size
 
 struct Edge {
   Vec3 from, to;
@@ -20,14 +20,14 @@ struct Edge {
 struct Outline {
   Edge edges[3 * kTrianglesMax];
   std::uint32_t count = 0;
-  Vec3d area_vector = {0, 0, 0};  // twice the area along the normal
+  Vec3d area_vector = {0, 0, 0};  // twice the area, along the normal
 };
 
 Vec3d area_vector_of(const Vec3& a, const Vec3& b, const Vec3& c) {
   return cross(to_double(b) - to_double(a), to_double(c) - to_double(a));
 }
 
-// Adds an edge, or removes the same edge of a neighbour, which runs the other way.
+// Adds an edge, or removes its opposite, which a neighbour shares.
 void add_edge(const Vec3& from, const Vec3& to, Outline* outline) {
   for (std::uint32_t i = 0; i < outline->count; ++i) {
     if (!(outline->edges[i].from == to && outline->edges[i].to == from)) continue;
@@ -38,7 +38,7 @@ void add_edge(const Vec3& from, const Vec3& to, Outline* outline) {
   outline->edges[outline->count++] = {from, to};
 }
 
-// The edges of a lamp's triangles without those that two share. False if there are too many.
+// Finds the lamp's boundary: edges that no two triangles share. Returns false if there are too many.
 bool find_outline(const FrameData& frame, const Lamp& lamp, Outline* outline) {
   std::uint32_t triangles = 0;
   for (std::uint32_t triangle = lamp.begin; triangle < lamp.end; ++triangle) {
@@ -54,7 +54,7 @@ bool find_outline(const FrameData& frame, const Lamp& lamp, Outline* outline) {
   return outline->count <= kLightCornerMax;
 }
 
-// Joins the edges to one polygon. False if they are not one.
+// Joins the edges into a polygon. Returns false if they do not form a single one.
 bool join(Outline* outline, LightPolygon* polygon) {
   CHECK_LE(outline->count, kLightCornerMax);
   polygon->corner_count = outline->count;
@@ -88,8 +88,8 @@ bool is_flat(const FrameData& frame, const Lamp& lamp, const LightPolygon& polyg
   return true;
 }
 
-// The sine of a margin around the polygon's plane, or above a horizon, beyond which neither its corners nor the lamp's
-// points, as rounded, lie on the other side.
+// Sine of the margin around the polygon's plane, or above a horizon, beyond which neither its corners nor the lamp's
+// rounded points lie on the other side.
 double margin_of(const LightPolygon& polygon, const LightPoint* points, std::uint32_t count, double size) {
   CHECK_GT(count, 0u);
   CHECK_GT(size, 0.0);

@@ -10,7 +10,7 @@
 namespace pocketray {
 namespace {
 
-// Chosen: of groups of four, nearly all are divided, and bounding them was in vain.
+// Chosen: with groups of four, nearly all are divided, and bounding them is wasted.
 constexpr std::uint32_t kGroupMax = 16;
 
 struct TreeBuilder {
@@ -20,7 +20,7 @@ struct TreeBuilder {
   std::uint32_t node_count = 0;
 };
 
-// Two lights as one: its power is theirs, and it is where their power is.
+// Merges two lights: their total power, at the centre of their power.
 LightPoint joined(const LightPoint& a, float a_intensity, const LightPoint& b, float b_intensity) {
   constexpr float most = std::numeric_limits<float>::max();
   const float sum = a_intensity + b_intensity, share = sum > 0 ? b_intensity / sum : 0.5f;

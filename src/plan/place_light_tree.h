@@ -4,9 +4,9 @@
 
 namespace pocketray {
 
-// Sets frame->light_tree: a tree for each kind of lights that have positions, halved at the median of the longest side
-// of their box [Walter05, "Lightcuts", joins pairs instead]. `nodes` and `order` are at least as many as the frame's
-// lights, which must be placed. Allocates nothing.
+// Sets frame->light_tree: a tree for each kind of lights that have positions, split at the median of the longest side
+// of their box [Walter05, "Lightcuts", joins pairs instead]. `nodes` and `order` have at least as many elements as the
+// frame has lights, which must be placed. Allocates nothing.
 void place_light_tree(Array<LightNode> nodes, Array<std::uint32_t> order, FrameData* frame);
 
 }  // namespace pocketray

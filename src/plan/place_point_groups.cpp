@@ -16,11 +16,11 @@ struct GroupBuilder {
   PointGroup* groups;
   std::uint32_t count = 0;
 
-  // In double precision, as fourth powers of lengths exceed the range of float.
+  // In double precision, since fourth powers of lengths exceed the range of float.
   Vec3d position(std::uint32_t point) const { return to_double(points[point].position); }
 };
 
-// Of the group's points the one with the greatest value; of several, the one with the lowest number.
+// Returns the group's point with the greatest value; on ties, the one with the lowest number.
 template <class Value>
 std::uint8_t greatest(const GroupBuilder& b, const PointGroup& group, Value value) {
   std::uint8_t best = b.order[group.begin];
@@ -34,8 +34,8 @@ std::uint8_t greatest(const GroupBuilder& b, const PointGroup& group, Value valu
 
 double square(const Vec3d& v) { return dot(v, v); }
 
-// The corners of a rectangle, whichever way it is turned: the point farthest from the middle, the one opposite, the one
-// farthest from their diagonal, and the one opposite that.
+// Finds the corners of a rectangle in any orientation: the point farthest from the middle, its opposite, the point
+// farthest from their diagonal, and its opposite.
 void find_probes(const GroupBuilder& b, PointGroup* group) {
   Vec3d middle = {0, 0, 0};
   for (std::uint32_t i = group->begin; i < group->end; ++i) middle += b.position(b.order[i]);
@@ -59,8 +59,8 @@ Vec3d longest_edge(const GroupBuilder& b, const PointGroup& group) {
   return square(one) >= square(other) ? one : other;
 }
 
-// Where to divide the sorted points, neither half with less than a third of them: at a wide gap near the middle, so
-// that rows of a grid stay whole.
+// Finds where to divide the sorted points, with at least a third of them in either half: at a wide gap near the middle,
+// so that rows of a grid stay whole.
 std::uint32_t find_half(const GroupBuilder& b, std::uint32_t begin, std::uint32_t end, const Vec3d& along) {
   const std::uint32_t third = (end - begin + 2) / 3, first = begin + third, last = end - third;
   auto gap = [&](std::uint32_t i) { return dot(b.position(b.order[i]) - b.position(b.order[i - 1]), along); };

@@ -4,8 +4,8 @@
 
 namespace pocketray {
 
-// Sets frame->point_groups for its lights, which must be placed; no groups if each point is to be tested. The arrays are
-// at least as many as the frame's lights. Allocates nothing.
+// Sets frame->point_groups for the frame's lights, which must be placed; no groups if each point is to be tested. The
+// arrays have at least as many elements as the frame has lights. Allocates nothing.
 void place_point_groups(Array<PointGroup> groups, Array<std::uint8_t> order, Array<std::uint8_t> place,
                         FrameData* frame);
 

@@ -14,26 +14,26 @@
 namespace pocketray {
 namespace {
 
-// Chosen: paths end at random, and among surfaces that reflect 0.8 one in fourteen would go on. Their light is lost;
-// more bounces would need more of kPrimes.
+// Chosen: paths end at random, and among surfaces of reflectance 0.8 one in fourteen would go further. Their light is
+// lost; more bounces would need more of kPrimes.
 constexpr std::uint32_t kBounceMax = 12;
 constexpr std::uint32_t kNumbersPerBounce = 3;
 constexpr std::uint32_t kWalksMeasured = 256;
 constexpr EffectMask kLights =
     bit(Effect::point_light) | bit(Effect::spot_light) | bit(Effect::directional_light) | bit(Effect::area_light);
-// Three numbers at the light, three per bounce: multiples of the square roots of primes, modulo one. Their fractions
-// are spread evenly [Weyl 1916], from the first on, which those of Halton's sequence in large bases are not.
+// Three numbers at the light, three per bounce: multiples of the square roots of primes, modulo one. They are evenly
+// spread [Weyl 1916] from the first one on, unlike Halton's sequence in large bases.
 constexpr double kPrimes[kNumbersPerBounce * (kBounceMax + 1)] = {
     2,  3,  5,  7,  11, 13,  17,  19,  23,  29,  31,  37,  41,  43,  47,  53,  59,  61,  67, 71,
     73, 79, 83, 89, 97, 101, 103, 107, 109, 113, 127, 131, 137, 139, 149, 151, 157, 163, 167};
 
-// Bounds of the geometry term by that of a patch of a light's share of the surfaces, which gives at most π times its
-// radiance, where it lies. Measured: with a quarter, ꟻLIP against full transport falls on cornell, cube and seesaw, the
-// mean by .014 at most. Where compensation makes up for it, it falls until 1/32, and from there on light is lost, since
-// what its rays meet is not compensated; see tests/indirect/FIGURES.md.
+// Bound of the geometry term, relative to that of a patch of a light's share of the surfaces, which gives at most π
+// times its radiance where it lies. Measured: with a quarter, ꟻLIP against full transport falls on cornell, cube and
+// seesaw, the mean by at most .014. With compensation it keeps falling down to 1/32; below, light is lost, since what
+// the compensation's rays hit is not compensated itself; see tests/indirect/FIGURES.md.
 constexpr double kBound = 0.25, kCompensatedBound = 0.0625;
 
-// The place of a walk's bounce in the pattern. Successive walks, and bounces of one, take its four quarters in turn.
+// Position of a walk's bounce in the pattern. Successive walks, and bounces of one, cycle through its four quarters.
 std::uint32_t place_in_pattern(std::uint32_t walk, std::uint32_t bounce) {
   return (4 * walk + walk / 4 + 5 * bounce) % kVirtualLightPlaces;
 }
@@ -53,8 +53,8 @@ struct Particle {
   float range = 0;  // of the light, on the way from it; 0: no limit
 };
 
-// What lights are placed by must not follow every movement of the scene, or each would change all of the light: a box
-// that changes in steps of a sixteenth to a thirty-second of its longest edge.
+// Reference box for placing lights. It must not follow every movement of the scene, which would change all of the
+// light, so it changes in steps of 1/16 to 1/32 of its longest edge.
 struct Surroundings {
   Vec3d low, high;
 };
@@ -80,7 +80,7 @@ Vec3d uniform_direction(const Vec3d& axis, double height, double u, double v) { 
   return tangent * (sine * det_cos(phi)) + bitangent * (sine * det_sin(phi)) + axis * (1 - below);
 }
 
-// Flux of a light point of a run, all directions together.
+// Flux of a light point of a run, over all directions.
 Vec3d flux_of(const FrameData& frame, const LightRun& run, const LightPoint& light) {
   Vec3d intensity = to_double(light.intensity);
   if (light.material != kNone) return intensity * (kPi * (light.two_sided ? 2 : 1));
@@ -93,7 +93,7 @@ Vec3d flux_of(const FrameData& frame, const LightRun& run, const LightPoint& lig
   return intensity * (2 * kPi * (spot ? 1 - static_cast<double>(light.cos_outer) : 2));
 }
 
-// A particle that leaves a light with its flux.
+// Returns a particle that leaves a light with its flux.
 Particle emit(const FrameData& frame, const LightRun& run, const LightPoint& light, Walk* walk) {
   Particle p = {{light.position, {0, 0, 0}, __builtin_inff()}, flux_of(frame, run, light), light.range};
   double u = walk->next(), v = walk->next();
@@ -104,7 +104,7 @@ Particle emit(const FrameData& frame, const LightRun& run, const LightPoint& lig
       u = u < 0.5 ? 2 * u : 2 * u - 1;
     }
     p.ray.direction = to_float(power_cosine_direction(axis, 1, u, v));
-    // Off the emitter, by far more than rounding.
+    // Moved off the emitter by far more than rounding.
     p.ray.origin += to_float(axis) * (max_component(abs(light.position)) * 0x1p-18f);
   } else if (run.sample == find_light_sampler(Effect::directional_light)) {
     const Surroundings s = surroundings_of(frame.accel.bounds);
@@ -127,14 +127,14 @@ Particle emit(const FrameData& frame, const LightRun& run, const LightPoint& lig
   return p;
 }
 
-// The falloff of a light with a range, as lights.cpp has it.
+// Falloff of a light with a range, as in lights.cpp.
 double window_at(float range, float distance) {
   if (!(range > 0)) return 1;
   double q = static_cast<double>(distance) / static_cast<double>(range), window = 1 - q * q * q * q;
   return window > 0 ? window : 0;
 }
 
-// Sends the particle on from a surface; false: it is absorbed.
+// Scatters the particle at a surface; returns false if it is absorbed.
 bool scatter(const FrameData& frame, const Surface& s, Walk* walk, Particle* p) {
   Material mapped;
   const Material& m = lobes_at(frame, s, &mapped);
@@ -159,7 +159,7 @@ bool scatter(const FrameData& frame, const Surface& s, Walk* walk, Particle* p) 
   return true;
 }
 
-// Follows a particle and leaves a light at each diffuse surface, while there is room.
+// Follows a particle and leaves a light at each diffuse surface while there is room.
 void follow(const FrameData& frame, Particle particle, Walk* walk, VirtualLights* lights) {
   TraceStats stats;
   for (std::uint32_t bounce = 0; bounce < kBounceMax; ++bounce) {
@@ -178,7 +178,7 @@ void follow(const FrameData& frame, Particle particle, Walk* walk, VirtualLights
   }
 }
 
-// Bits of three coordinates in turn, ten of each.
+// Interleaves the bits of three coordinates, ten each.
 std::uint32_t morton_code(const Surroundings& s, const Vec3& p) {
   const Vec3d from = to_double(p) - s.low, size = s.high - s.low;
   std::uint32_t code = 0, axis = 0;
@@ -190,7 +190,7 @@ std::uint32_t morton_code(const Surroundings& s, const Vec3& p) {
   return code;
 }
 
-// Puts lights that are close together next to each other, by insertion, which keeps the order of equal ones.
+// Sorts lights so that neighbours in space are adjacent, by insertion, which is stable.
 void sort_lights(const FrameData& frame, VirtualLights* lights) {
   const Surroundings surroundings = surroundings_of(frame.accel.bounds);
   CHECK_LE(lights->count, kVirtualLightRoom);
@@ -203,7 +203,7 @@ void sort_lights(const FrameData& frame, VirtualLights* lights) {
   }
 }
 
-// Lists the lights of each place, in order. If there are too many at a place, the last ones move to the next.
+// Lists the lights of each place, in order. Excess lights of a place move to the next.
 void list_places(VirtualLights* lights) {
   std::uint32_t counts[kVirtualLightPlaces] = {};
   for (std::uint32_t i = 0; i < lights->count; ++i) {
@@ -231,7 +231,7 @@ double surface_area(const FrameData& frame) {
   return area;
 }
 
-// Picks a light point by its share of the flux, u in [0, 1).
+// Picks a light point with probability proportional to its flux, u in [0, 1).
 bool pick(const FrameData& frame, double total, double u, const LightRun** run, const LightPoint** light,
           double* probability) {
   double left = u * total;
@@ -246,7 +246,7 @@ bool pick(const FrameData& frame, double total, double u, const LightRun** run, 
   return total > 0;  // rounding: the last one
 }
 
-// The sum over all lights of their flux.
+// Total flux of all lights.
 double total_flux(const FrameData& frame) {
   double total = 0;
   for (int r = 0; r < frame.light_run_count; ++r)
@@ -255,7 +255,7 @@ double total_flux(const FrameData& frame) {
   return total;
 }
 
-// Sends walk `index` from a light. False if none shines.
+// Sends walk `index` from a light. Returns false if no light shines.
 bool send(const FrameData& frame, double total, std::uint32_t index, VirtualLights* lights) {
   Walk walk = {index + 1};
   const LightRun* run = nullptr;
@@ -273,7 +273,7 @@ bool send(const FrameData& frame, double total, std::uint32_t index, VirtualLigh
 void measure_walks(const FrameData& frame, Array<const Light> scene_lights, Array<LightPoint> points) {
   VirtualLights* lights = virtual_lights_of(frame.indirect);
   CHECK(lights != nullptr);
-  FrameData plain = frame;  // nothing that settings decide
+  FrameData plain = frame;  // independent of settings
   plain.settings = Settings();
   plain.settings.points_per_area_light = 1;
   plain.mask = frame.mask & kLights;
@@ -299,14 +299,14 @@ void place_virtual_lights(FrameData* frame) {
   CHECK(lights != nullptr && lights->area >= 0);
   const double wanted = frame->settings.virtual_lights, per_walk = lights->lights_per_walk;
   CHECK_LE(wanted, kVirtualLightMax);
-  const double walk_max = 2 * wanted;  // a walk that meets nothing leaves no light
+  const double walk_max = 2 * wanted;  // a walk that hits nothing leaves no light
   const double walks = per_walk * walk_max > wanted ? std::ceil(wanted / per_walk) : walk_max;
   const double total = total_flux(*frame);
   lights->count = 0;
   std::uint32_t walk_count = 0;
   while (walk_count < walks && send(*frame, total, walk_count, lights)) ++walk_count;
   const float scale = walk_count ? static_cast<float>(1.0 / walk_count) : 0;
-  // The usual number, which is steady, unless the lights have come to shine on much more than at first.
+  // The expected number, which is steady, unless the lights have come to reach far more surfaces than at first.
   const double usual = walk_count * per_walk, count = lights->count > 2 * usual ? lights->count : usual;
   const double patch = lights->area > 0 ? kPi * count / lights->area : 0;
   const bool is_compensated = frame->settings.compensation == Compensation::rays;

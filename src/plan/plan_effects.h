@@ -11,7 +11,7 @@ namespace pocketray {
 EffectPlan plan_effects(const Scene& scene, const Settings& settings);
 
 // Parses a list as in --effects: "auto", "all" or names, each optionally preceded by "-", separated by commas.
-// "auto,-shadow" is the scene's needs without shadows; "shadow,mirror" is only these two.
+// "auto,-shadow" means what the scene needs except shadows; "shadow,mirror" means only these two.
 Status parse_effects(const char* text, Settings* settings);
 
 // Checks every setting against base/limit_list.h.

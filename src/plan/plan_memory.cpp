@@ -19,7 +19,7 @@ namespace {
 
 void add_part(MemoryPlan* plan, const char* name, ArenaKind arena, std::size_t bytes) {
   CHECK(name != nullptr);
-  if (bytes == 0) return;  // an absent effect has no part
+  if (bytes == 0) return;  // an absent effect takes no memory
   CHECK_LT(plan->part_count, kMemoryPartMax);
   plan->parts[plan->part_count++] = {name, arena, bytes};
   std::size_t* arena_bytes = &plan->arena_bytes[static_cast<int>(arena)];
@@ -112,7 +112,7 @@ Status plan_memory_with(const Scene& scene, const Settings& settings, const Effe
         coherence_need(scene, effects.mask, coherence_plan(settings, lights.points, polygons, storage.recolorable)));
     scratch = std::max(scratch, coherence_scratch_need(scene, effects.mask));
   }
-  // The scratch of a single build is free again when the first frame is shown, so output shares its part of the frame
+  // A single build's scratch is free again before the first frame is shown, so output shares its part of the frame
   // arena.
   if (rebuilds) add_part(plan, "build scratch", ArenaKind::frame, std::exchange(scratch, 0));
   add_part(plan, scratch > output.output_bytes ? "build scratch, then output" : "output", ArenaKind::frame,
@@ -127,7 +127,7 @@ Status plan_memory_with(const Scene& scene, const Settings& settings, const Effe
   std::size_t fits = megabytes_up(plan->total_bytes);
   return failure(
       "the scene needs %.1f MiB of memory but %.1f MiB are allowed; the largest part is %s with %.1f MiB%s; "
-      "%zu MiB would do",
+      "%zu MiB would be enough",
       megabytes(plan->total_bytes), megabytes(plan->limit_bytes), largest->name, megabytes(largest->bytes),
       scene.accel.empty() && triangles > 1000 ? " (baking the scene saves the build's scratch)" : "", fits);
 }
@@ -140,7 +140,7 @@ Status plan_memory(const Scene& scene, const Settings& settings, const EffectPla
   const bool changes = (has(effects.mask, Effect::animation) && is_animated(scene)) || storage.recolorable > 0;
   bool wanted = settings.coherence == CoherenceMode::on || (settings.coherence == CoherenceMode::automatic && changes);
   const char* mixes = is_interleaved(effects.mask) && settings.coherence_by_tables
-                          ? "the tables do not know which pixels mix their light"
+                          ? "the tables do not track which pixels share light"
                       : has(effects.mask, Effect::selective)     ? "selective rendering interpolates pixels"
                       : has(effects.mask, Effect::undersampling) ? "undersampling reconstructs pixels"
                                                                  : nullptr;
@@ -168,8 +168,8 @@ Status plan_output_memory(const Settings& settings, const OutputNeed& output, Me
   align_arenas(plan);
   if (plan->total_bytes <= plan->limit_bytes) return success();
   return failure(
-      "pictures of %ux%u pixels need %.1f MiB of memory without a scene but %.1f MiB are allowed; %zu MiB would do, "
-      "or a smaller picture",
+      "pictures of %ux%u pixels need %.1f MiB of memory without a scene but %.1f MiB are allowed; "
+      "%zu MiB would be enough, or a smaller picture",
       settings.width, settings.height, megabytes(plan->total_bytes), megabytes(plan->limit_bytes),
       megabytes_up(plan->total_bytes));
 }

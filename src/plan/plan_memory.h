@@ -29,19 +29,19 @@ struct MemoryPlan {
   std::size_t total_bytes = 0, limit_bytes = 0;
 };
 
-// Where the scene's data is before planning.
+// Memory that the scene uses before planning.
 struct SceneStorage {
   std::size_t arena_bytes = 0;    // already taken from the scene arena
-  std::uint32_t recolorable = 0;  // materials of which a copy is kept, so that they can change
+  std::uint32_t recolorable = 0;  // materials kept as a copy, so that they can change
 };
 
-// At most.
+// Upper bounds.
 struct PlannedLights {
   std::uint32_t points = 0;
-  std::uint32_t selected = 0;  // points among which source selection chooses; 0: it is not planned
+  std::uint32_t selected = 0;  // points from which source selection chooses; 0: it is not planned
 };
 
-// What the caller needs of the frame arena.
+// The caller's use of the frame arena.
 struct OutputNeed {
   std::size_t output_bytes = 0;  // to show or write a frame: packed pixels, PNG encoder, rows of render servers
   std::size_t tls_bytes = 0;     // to encrypt the links to render servers
@@ -51,15 +51,15 @@ struct OutputNeed {
 // Plans the block.
 // Fails with the figures and a setting that would fit if the total exceeds settings.memory_bytes; fills the plan in
 // either case.
-// Memory to trace only what changes is planned as requested, and left out if everything else fits without it:
-// *without_coherence (may be null) receives why it is left out, or null.
+// Memory for tracing only what changes is planned as requested, and left out if everything else fits without it:
+// *without_coherence (may be null) receives the reason, or null.
 Status plan_memory(const Scene& scene, const Settings& settings, const EffectPlan& effects, const AccelInfo& accel,
                    const SceneStorage& storage, const PlannedLights& lights, const OutputNeed& output, MemoryPlan* plan,
                    const char** without_coherence = nullptr);
 CoherencePlan coherence_plan(const Settings& settings, std::uint32_t light_point_count, std::uint32_t area_light_count,
                              std::uint32_t recolorable = 0);
 
-// The same for a device that only shows what others render: its plan has only the output.
+// Plans the block of a device that only shows frames rendered elsewhere: it has only the output.
 Status plan_output_memory(const Settings& settings, const OutputNeed& output, MemoryPlan* plan);
 
 // Draws the map as text, one line per part, into `text` (`size` bytes, always terminated). Returns its length.

@@ -56,7 +56,7 @@ Camera inside_camera(const Box& bounds, double vertical_fov) {
 
 namespace {
 
-// How far the camera inside may be from the middle so that no wall stands between them, and a fifth of the way is left.
+// Fraction of inside_camera()'s distance from the middle that keeps walls out of the way, with a fifth of it to spare.
 float share_inside(const Scene& scene, const Box& bounds) {
   const Vec3 middle = center(bounds), way = inside_camera(bounds).eye - middle;
   const float distance = length(way);
@@ -65,7 +65,7 @@ float share_inside(const Scene& scene, const Box& bounds) {
   return room < distance ? room / distance : 1;
 }
 
-// Whether any light is on.
+// Returns whether any light is on.
 bool shines(Array<const Light> lights) {
   return std::any_of(lights.begin(), lights.end(), [](const Light& light) { return !is_zero(light.intensity); });
 }
@@ -73,8 +73,8 @@ bool shines(Array<const Light> lights) {
 constexpr Vec3 kSides[kDefaultViewSides] = {
     {0.45f, 0.35f, 1.0f}, {1.0f, 0.35f, -0.45f}, {-0.45f, 0.35f, -1.0f}, {-1.0f, 0.35f, 0.45f}};
 
-// Of four directions around the scene, 24° to the right and 18° above, the front unless another shows much more of open
-// surfaces' fronts. Much is 0.3 of a side of the box, as in find_room().
+// Chooses among four directions around the scene, 24° to the right and 18° above: the front, unless another shows much
+// more of open surfaces' fronts. Much is 0.3 of a side of the box, as in find_room().
 std::uint32_t side_to_look_from(const Scene& scene, const Box& bounds) {
   const Vec3d area = shown_area(scene, bounds);
   const double box_side = static_cast<double>(half_area(bounds)) / 3;
@@ -122,8 +122,8 @@ bool lights_itself(const Scene& scene) {
 
 void default_lights(const DefaultView& view, const Box& bounds, const Camera& camera, Light* lights) {
   CHECK(lights != nullptr);
-  // Intensities are chosen: by the key alone, white that faces it has 0.83 of display white, which leaves room for the
-  // fill's 0.2. In a room they grow with its size squared, so that rooms of any size are equally bright.
+  // Chosen: the key alone lights a white surface that faces it to 0.83 of display white, which leaves room for the
+  // fill's 0.2. In a room, intensities grow with its size squared, so that rooms of any size are equally bright.
   lights[0] = lights[1] = Light();
   if (view.is_room && !is_empty(bounds)) {  // the sun cannot get in
     Vec3 half = extent(bounds) * 0.5f;
@@ -149,12 +149,12 @@ Light default_sun() {
   Light sun;
   sun.kind = LightKind::directional;
   sun.direction = -normalize(Vec3{-0.5f, 1, 0.6f});
-  sun.intensity = {3.0f, 2.9f, 2.7f};  // chosen: it alone brings white that faces it to 0.95 of display white
+  sun.intensity = {3.0f, 2.9f, 2.7f};  // chosen: it alone lights a white surface that faces it to 0.95 of display white
   return sun;
 }
 
-// Chosen: a tenth of the key, so that shadows are not black; the background is darker than white in
-// ambient light alone.
+// Chosen: a tenth of the key, so that shadows are not black; the background is darker than white under ambient light
+// alone.
 Vec3 default_ambient() { return {0.09f, 0.09f, 0.1f}; }
 Vec3 default_background() { return {0.045f, 0.05f, 0.06f}; }
 

@@ -8,42 +8,42 @@ namespace pocketray {
 // Bounds of all triangles.
 Box scene_bounds(const Scene& scene);
 
-// A camera that frames the whole box from the unit direction `backward`. Fields of view here are vertical, in radians.
+// A camera that frames the whole box from the unit direction `backward`. Fields of view are vertical, in radians.
 // Chosen: those of 33 and 21 mm lenses on 35 mm film. Wider ones distort objects, narrower ones show less of a room.
 constexpr double kFramingFieldOfView = radians(40), kInsideFieldOfView = radians(60);
 Camera framing_camera(const Box& bounds, float aspect, const Vec3& backward, double vertical_fov = kFramingFieldOfView);
 // A camera inside the box that looks across it.
 Camera inside_camera(const Box& bounds, double vertical_fov = kInsideFieldOfView);
 
-// The scene's, as stored, or measured by some looks at every triangle. `bounds`: scene_bounds().
+// Returns the scene's stored view, or measures it by a few looks at every triangle. `bounds`: scene_bounds().
 DefaultView find_default_view(const Scene& scene, const Box& bounds);
 
 // The camera of a scene without one: inside a closed room, in front of an open one, otherwise framing the scene from
-// slightly above and to the right of the front, or of another side where open surfaces show their backs to the front.
+// slightly above and to the right of the front, or of another side if open surfaces show their backs to the front.
 // `vertical_fov`: 0 chooses it.
 Camera default_camera(const DefaultView& view, const Box& bounds, float aspect, double vertical_fov = 0);
-// Whether a model lights itself: it has a light, a surface that emits more than display white, or dimmer lamps that
-// light other surfaces. (A glow that falls on none, such as that of a display, is not the light to see a model by.)
+// Returns whether a model lights itself: it has a light, a surface that emits more than display white, or dimmer lamps
+// that light other surfaces. (A glow that falls on none, such as a display's, is not enough to see a model by.)
 bool lights_itself(const Scene& scene);
 
 // The lights of a scene without any, or one that asks for default lights: a key from the upper left of the camera and a
-// weaker fill from its right, both directional; in a room a point light below the ceiling and one at the camera. An
+// weaker fill from its right, both directional; in a room, a point light below the ceiling and one at the camera. An
 // ambient term comes with them.
 constexpr std::uint32_t kDefaultLightCount = 2;
 void default_lights(const DefaultView& view, const Box& bounds, const Camera& camera, Light* lights);
-// What is left of them in a studio (import/environment.h), an environment that comes beside default lights. Chosen: a
-// white surface that faces the key is as bright as without a studio, within a tenth.
+// Fraction of the default lights kept in a studio (import/environment.h), an environment that accompanies them. Chosen:
+// a white surface that faces the key is as bright as without a studio, within a tenth.
 constexpr float kStudioLightShare = 0.5f;
-// In place of these lights, one from high above, whatever the camera.
+// A light from high above that replaces these, whatever the camera.
 Light default_sun();
 Vec3 default_ambient();
 Vec3 default_background();
 
-// Whether the scene is visible without default lights: it has a light, an ambient term, an environment or an emissive
-// surface, or all its surfaces are unlit.
+// Returns whether the scene is visible without default lights: it has a light, an ambient term, an environment or an
+// emissive surface, or all its surfaces are unlit.
 bool has_light(const Scene& scene);
 
-// Takes the environment away. Its mean stays as an ambient term, except of a studio, and of an environment that was the
+// Removes the environment. Its mean stays as an ambient term, except for a studio, and for an environment that was the
 // only light: default lights replace these.
 void leave_out_environment(Scene* scene);
 

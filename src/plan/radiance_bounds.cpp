@@ -18,17 +18,17 @@
 namespace pocketray {
 namespace {
 
-// Upper bound of what a coat of strength 1 reflects of the surroundings.
+// Upper bound of the surroundings' light that a coat of strength 1 reflects.
 float coat_glow_bound(const FrameData& frame, const Material& coat, bool lit_by_environment) {
   if (lit_by_environment) return environment_bound(*frame.scene, coat, frame.mask);
   return has(frame.mask, Effect::ambient_gloss) ? reflected_surroundings_bound(frame.scene->info, coat) : 0;
 }
 
-// What surfaces of a material send out at most.
+// Upper bounds of the radiance that surfaces of a material send out.
 struct MaterialBound {
   float own;        // without light from lights
-  float scattered;  // for an irradiance of 1 by lights
-  float passed;     // of what its rays bring, where it mirrors or transmits; otherwise 0
+  float scattered;  // per irradiance of 1 by lights
+  float passed;     // fraction of incoming radiance passed on, if it mirrors or transmits; otherwise 0
 };
 
 MaterialBound material_bound(const FrameData& frame, std::uint32_t index) {
@@ -81,10 +81,10 @@ struct LightReach {
   const FrameData* frame;
   const LightPoint* light;
   bool is_area;
-  Box positions;  // of all that it is
+  Box positions;  // bounds of the whole light
 };
 
-// Upper bound of the irradiance within a box that reaches as high over the emitter's plane; falls as the box shrinks.
+// Upper bound of the irradiance within a box up to `height` above the emitter's plane; falls as the box shrinks.
 float irradiance_within(const LightReach& reach, const Box& box, float height) {
   const LightPoint& light = *reach.light;
   const float square = box_distance_square(box, reach.positions);
@@ -120,7 +120,7 @@ float box_irradiance(const void* context, const Box& box) {
   const Vec3 &from = reach.light->position, &direction = reach.light->direction;
   float height = 0;
   if (reach.is_area) {
-    // The sums of the largest and smallest products are the corners' heights, rounded as those of any vertex.
+    // The sums of the largest and smallest products are the corners' heights, rounded like any vertex's.
     const Vec3 low = (box.low - from) * direction, high = (box.high - from) * direction;
     const Vec3 most = max(low, high), least = min(low, high);
     height = most.x + most.y + most.z;
@@ -129,7 +129,7 @@ float box_irradiance(const void* context, const Box& box) {
   return irradiance_within(reach, box, height);
 }
 
-// Upper bound of a light's irradiance on any triangle but its own; `positions` holds all that it is.
+// Upper bound of a light's irradiance on any triangle but its own; `positions` bounds the whole light.
 float irradiance_bound(const FrameData& frame, const LightPoint& light, Effect kind, const Box& positions) {
   const float intensity = max_component(light.intensity);
   if (!(intensity > 0)) return 0;
@@ -139,7 +139,7 @@ float irradiance_bound(const FrameData& frame, const LightPoint& light, Effect k
   return most < kRadianceMax ? most : kRadianceMax;
 }
 
-// The same for a lamp in closed form, as if one of its points had all its light.
+// Upper bound for a lamp in closed form, as if one of its points had all its light.
 float lamp_bound(const FrameData& frame, const LightPolygon& polygon, LightPoint point) {
   if (!polygon.corner_count) return 0;
   Box box = empty_box();
@@ -156,7 +156,7 @@ float irradiance_bound(const FrameData& frame) {
   float irradiance = 0;
   for (int r = 0; r < frame.light_run_count; ++r) {
     const LightRun& run = frame.light_runs[r];
-    float lamp = 0;  // the sum over its points
+    float lamp = 0;  // sum over its points
     for (std::uint32_t i = run.begin; i < run.end; ++i) {
       const LightPoint& light = frame.lights[i];
       Effect kind = light.material != kNone                                       ? Effect::area_light
@@ -174,8 +174,8 @@ float irradiance_bound(const FrameData& frame) {
 
 float lit(float scattered, float irradiance) { return scattered > 0 && irradiance > 0 ? scattered * irradiance : 0; }
 
-// To a sixteenth of the next power of two: frames of an animation, whose lights and surfaces move a little, have the
-// same bound and so leave out the same rays.
+// Rounds up to a sixteenth of the next power of two: frames of an animation, whose lights and surfaces move a little,
+// get equal bounds and so skip the same rays.
 float round_up(float bound) {
   int exponent;
   float mantissa = std::frexp(bound, &exponent);
@@ -194,10 +194,10 @@ RadianceBounds radiance_bounds(const FrameData& frame) {
   CHECK(scene.material_maps.empty() || scene.material_maps.count == scene.materials.count);
   const bool shows_environment = has(frame.mask, Effect::environment) && environment_of(scene);
   const float background = surroundings_bound(frame, shows_environment);
-  // Of surfaces that end paths, of those that pass on less than comes, and of others.
+  // Maxima over surfaces that end paths, that pass on less light than they receive, and all others.
   MaterialBound end = {0, 0, 0}, weaken = {0, 0, 0}, keep = {0, 0, 0};
   float irradiance = -1;
-  float fixed = 0;  // the most that surfaces which weaken light can have if none is brighter: own / (1 − passed)
+  float fixed = 0;  // maximum for surfaces that weaken light if none is brighter: own / (1 − passed)
   for (std::uint32_t i = 0; i < scene.materials.count; ++i) {
     const MaterialBound m = material_bound(frame, i);
     const bool passes_on = passes_light_on(frame, i);

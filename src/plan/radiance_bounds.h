@@ -5,12 +5,12 @@
 
 namespace pocketray {
 
-// Of any ray: the brightest of what surfaces send out that end a path, of the surroundings, and of what surfaces pass
-// on that mirror or transmit, each with its own share; rounded up by at most an eighth. Infinite if unbounded. After
-// settings.ray_depth, FrameData::beyond_depth or the environment is seen.
+// Bounds for any ray: the brightest of the surroundings, of surfaces that end a path, and of surfaces that mirror or
+// transmit, each with its own share; rounded up by at most an eighth. Infinite if unbounded. Beyond settings.ray_depth,
+// FrameData::beyond_depth or the environment is seen.
 RadianceBounds radiance_bounds(const FrameData& frame);
 
-// Whether paths branch: something transmits, or has a coat.
+// Returns whether paths branch: something transmits, or has a coat.
 bool has_branches(const Scene& scene);
 
 }  // namespace pocketray

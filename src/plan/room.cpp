@@ -20,7 +20,7 @@ Corners corners(const Scene& scene, const Triangle& t, const Vec3& from) {
           scene.positions[t.vertex(2)] - from};
 }
 
-// By the divergence theorem ∑ (corner · area vector) / 3 is the enclosed volume, negative if normals point inward.
+// By the divergence theorem, ∑ (corner · area vector) / 3 is the enclosed volume, negative if normals point inward.
 double enclosed_volume(const Scene& scene, const Vec3& middle) {
   double volume = 0;
   for (const Triangle& t : scene.triangles) {
@@ -30,10 +30,10 @@ double enclosed_volume(const Scene& scene, const Vec3& middle) {
   return volume;
 }
 
-// Whether a shell that encloses its middle holds nothing: neither light nor a surface that is turned away from there,
-// as every piece of furniture has. `volume`: the enclosed one.
+// Returns whether a shell that encloses its middle is empty: no light, and no surface that is turned away from the
+// middle, as every piece of furniture has. `volume`: the enclosed one.
 bool holds_nothing(const Scene& scene, const Vec3& middle, double volume) {
-  constexpr double kShareMax = 1e-5;  // chosen: of a room's volume, what lies between its middle and the back of a book
+  constexpr double kShareMax = 1e-5;  // chosen: of a room's volume, the part between its middle and the back of a book
   if (scene.lights.count) return false;
   double turned_away = 0;
   for (const Triangle& t : scene.triangles) {
@@ -44,8 +44,8 @@ bool holds_nothing(const Scene& scene, const Vec3& middle, double volume) {
   return turned_away <= kShareMax * std::fabs(volume);
 }
 
-// The solid angle of all triangles that face a point, as if each were small: more than all directions where surfaces
-// surround the point, next to nothing inside a solid.
+// Solid angle of all triangles that face a point, as if each were small: more than all directions if surfaces surround
+// the point, almost zero inside a solid.
 float facing_solid_angle(const Scene& scene, const Vec3& from) {
   float sum = 0;
   for (const Triangle& t : scene.triangles) {
@@ -57,19 +57,19 @@ float facing_solid_angle(const Scene& scene, const Vec3& from) {
   return sum;
 }
 
-constexpr int kLooks = 26;     // to the neighbours in a cube of cubes
+constexpr int kLooks = 26;     // towards the neighbours in a cube of cubes
 constexpr int kWallsMin = 20;  // chosen: five pass through a missing wall (tests/plan/room_test.cpp); one more may miss
 
 struct Look {
   Ray ray;
   ShearedRay sheared;
-  std::uint32_t from = kNoTriangle;  // does not count
+  std::uint32_t from = kNoTriangle;  // triangle to ignore
   float distance = std::numeric_limits<float>::infinity();
   std::uint32_t triangle = kNoTriangle;
-  bool is_front = false, is_square = false;  // square: a wall across an axis, a floor, a ceiling
+  bool is_front = false, is_square = false;  // square: a wall across an axis, a floor or a ceiling
 };
 
-// Along each ray, the first triangle.
+// Finds the first triangle along each ray.
 void look_around(const Scene& scene, Array<Look> looks) {
   CHECK(looks.data != nullptr);
   for (std::uint32_t i = 0; i < scene.triangles.count; ++i) {
@@ -102,9 +102,9 @@ float distance_to_sides(const Box& box, const Vec3& direction) {
   return distance;
 }
 
-// Whether nearly all rays from the middle meet the front of a surface; on average rather at the bounds than close by,
-// as in a thicket; and most of them a floor, a ceiling or a straight wall, unlike in a vessel. The thresholds are
-// chosen; tests/plan/room_test.cpp has rooms and other things on either side.
+// Returns whether nearly all rays from the middle hit the front of a surface, on average near the bounds rather than
+// close by, as in a thicket; and most of them a floor, a ceiling or a straight wall, unlike in a vessel. The thresholds
+// are chosen; tests/plan/room_test.cpp has rooms and other things on either side.
 bool has_walls_around(const Scene& scene, const Box& bounds) {
   const Vec3 middle = center(bounds);
   if (!(facing_solid_angle(scene, middle) > 0.6f * 4 * kPiF)) return false;
@@ -113,7 +113,7 @@ bool has_walls_around(const Scene& scene, const Box& bounds) {
   for (int i = 0; i < 27; ++i) {
     const Vec3 to = {static_cast<float>(i % 3 - 1), static_cast<float>(i / 3 % 3 - 1), static_cast<float>(i / 9 - 1)};
     if (is_zero(to)) continue;
-    // Turned a little: many rooms' edges lie where the cube's do.
+    // Turned a little: many rooms' edges align with the cube's.
     if (!make_look(middle, normalize(to + Vec3{0.05f, 0.03f, -0.04f}), &looks[count++])) return false;
   }
   CHECK_EQ(count, static_cast<std::uint32_t>(kLooks));
@@ -150,7 +150,7 @@ bool lamps_light_up(const Scene& scene) {
   for (const Triangle& t : scene.triangles)
     if (emits(t)) area += static_cast<double>(length(area_vector(t)));
   if (!(area > 0)) return false;
-  constexpr int kLampLooks = 64, kLitMin = 6;  // chosen: the glow of a lit thing falls on less of it
+  constexpr int kLampLooks = 64, kLitMin = 6;  // chosen: a lit object catches less of its own glow
   Look looks[kLampLooks];
   std::uint32_t count = 0;
   int next = 0;

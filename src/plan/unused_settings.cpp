@@ -26,10 +26,10 @@ struct NoteWriter {
   }
 };
 
-// Effects that read the setting.
+// Returns the effects that read the setting.
 EffectMask readers_of(const SettingRow& row) { return row.seen_with == kAlways ? row.effects : row.seen_with; }
 
-// Settings that decide which pixels are traced turn off effects that need every pixel.
+// Returns whether the setting decides which pixels are traced; these turn off effects that need every pixel.
 bool interpolates(const SettingRow& row) { return row.seen_with == kAlways; }
 
 void add_unused(const SettingRow& row, const EffectPlan& plan, NoteWriter note) {

@@ -1,4 +1,4 @@
-// Settings that were asked for but cannot change this scene's pictures.
+// Requested settings that cannot change this scene's pictures.
 #pragma once
 #include "effect/setting_list.h"
 #include "scene/scene.h"
@@ -12,9 +12,9 @@ struct UnusedSettings {
   int count = 0;
 };
 
-// Compares the plan of `asked` with one in which a setting has its default: a setting is unused if the effects are the
-// same and none that reads it is on. Also names the effects that an interpolating setting (--selective, --resolution)
-// leaves out. Settings at their defaults count as not asked for.
+// Compares the plan of `asked` with plans in which one setting has its default: a setting is unused if the effects are
+// equal and none that reads it is on. Also names the effects that an interpolating setting (--selective, --resolution)
+// leaves out. Settings at their defaults count as not requested.
 UnusedSettings find_unused_settings(const Scene& scene, const Settings& asked);
 
 }  // namespace pocketray

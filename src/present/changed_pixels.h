@@ -1,4 +1,4 @@
-// What differs between two pictures of an animation.
+// Differences between two pictures of an animation.
 #pragma once
 #include <cstdint>
 
@@ -8,7 +8,7 @@ struct PixelBox {
   int left = 0, top = 0, width = 0, height = 0;
 };
 
-// The smallest box around all pixels that differ; width 0: none does. Rows of R, G, B without padding.
+// Returns the smallest box around all pixels that differ; width 0: none differ. Rows of R, G, B without padding.
 PixelBox find_changed(const std::uint8_t* before, const std::uint8_t* now, int width, int height);
 
 inline bool is_same_pixel(const std::uint8_t* a, const std::uint8_t* b) {

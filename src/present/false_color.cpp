@@ -10,7 +10,7 @@
 namespace pocketray {
 namespace {
 
-// The map at every eighth; interpolated linearly.
+// The map at multiples of 1/8, interpolated linearly.
 constexpr std::uint8_t kViridis[9][3] = {{68, 1, 84},    {71, 45, 123}, {59, 82, 139},  {44, 114, 142}, {33, 145, 140},
                                          {40, 174, 128}, {94, 201, 98}, {173, 220, 48}, {253, 231, 37}};
 constexpr int kMargin = 2;     // of a text box, in pixels

@@ -11,7 +11,7 @@ namespace pocketray {
 constexpr std::uint32_t kCodeBitsMax = 12, kCodesMax = 1u << kCodeBitsMax;
 constexpr std::uint32_t kSlots = 2 * kCodesMax;  // of the hash table
 
-// The dictionary: sequences of indices, each one index longer than another.
+// Dictionary of index sequences; each extends another by one index.
 struct LzwTable {
   std::uint32_t keys[kSlots];  // code << 8 | index, + 1; 0: free
   std::uint16_t codes[kSlots];
@@ -20,13 +20,13 @@ struct LzwTable {
 namespace {
 
 constexpr std::size_t kKnownColors = 1u << 12;
-constexpr std::size_t kBlockBytes = 255;  // of data, sec. 15
+constexpr std::size_t kBlockBytes = 255;  // data bytes per block, sec. 15
 
 struct CodeWriter {
   ByteSink sink;
   LzwTable* table;
   std::uint32_t clear, next, bits;  // the clear code; the next free code; bits per code
-  std::uint32_t prefix;             // code of the indices not written yet
+  std::uint32_t prefix;             // code of the indices not yet written
   bool has_prefix;
   std::uint32_t held = 0, held_bits = 0;
   std::uint8_t block[1 + kBlockBytes];
@@ -86,12 +86,12 @@ void put_word(std::uint32_t value, std::uint8_t* bytes) {
   bytes[1] = static_cast<std::uint8_t>(value >> 8);
 }
 
-// Pixels that changed, or all.
+// Returns whether the pixel is drawn: it changed, or this is the first frame.
 bool is_shown(const GifWriter& gif, const std::uint8_t* rgb, std::size_t at) {
   return !gif.has_frame || !is_same_pixel(rgb + at, gif.last.data + at);
 }
 
-// Every slot holds black at first, which is found in the first one alone.
+// Clears the cache. An empty slot reads as black, which belongs in slot 0 alone.
 void forget_colors(GifWriter* gif, const Palette& palette) {
   std::memset(gif->known_colors.data, 0, gif->known_colors.bytes());
   gif->known_colors[0] = nearest_color(palette, {});
@@ -119,10 +119,10 @@ std::uint32_t index_of(GifWriter* gif, const Palette& palette, const Rgb& color)
   return *known & 255;
 }
 
-// Secs. 23, 20 and 21: how the frame is shown, where, and its palette of 2^index_bits colours.
+// Secs. 23, 20 and 21: the frame's disposal and time, its position, and its palette of 2^index_bits colours.
 void write_frame_head(const GifWriter& gif, const PixelBox& box, const Palette& palette, std::uint32_t index_bits,
                       std::uint32_t centiseconds) {
-  std::uint8_t control[8] = {0x21, 0xf9, 4, 1 << 2, 0, 0, 0, 0};                              // what was shown stays
+  std::uint8_t control[8] = {0x21, 0xf9, 4, 1 << 2, 0, 0, 0, 0};                              // keep what was shown
   if (gif.has_frame) control[3] |= 1, control[6] = static_cast<std::uint8_t>(palette.count);  // the transparent index
   put_word(centiseconds, control + 4);
   gif.sink.write(gif.sink.user, control, sizeof control);
@@ -172,7 +172,7 @@ void add_gif_frame(GifWriter* gif, const std::uint8_t* rgb, std::uint32_t centis
   Palette palette;
   choose_palette(gif, rgb, gif->has_frame ? kPaletteMax - 1 : kPaletteMax, &palette);
   const std::uint32_t color_count = palette.count + gif->has_frame;
-  std::uint32_t index_bits = 2;  // appendix F: at least
+  std::uint32_t index_bits = 2;  // appendix F: minimum
   while (1u << index_bits < color_count) ++index_bits;
   write_frame_head(*gif, box, palette, index_bits, centiseconds);
 

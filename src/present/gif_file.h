@@ -13,18 +13,18 @@ struct GifWriter {
   ByteSink sink = {};
   int width = 0, height = 0;
   bool has_frame = false;
-  Array<std::uint8_t> last;           // R, G, B of the frame before
-  Array<Rgb> samples;                 // for its palette
+  Array<std::uint8_t> last;           // R, G, B of the previous frame
+  Array<Rgb> samples;                 // for the frame's palette
   Array<std::uint32_t> known_colors;  // a cache of nearest_color()
   LzwTable* table = nullptr;
 };
 
-// Bytes of arena that a writer takes.
+// Arena bytes that a writer needs.
 std::size_t gif_need(int width, int height);
-// Begins a file that repeats without end. The arena must have gif_need() bytes free, for as long as the writer is used.
+// Begins a file that loops forever. The arena must have gif_need() bytes free as long as the writer is used.
 GifWriter begin_gif(const ByteSink& sink, int width, int height, Arena* arena);
-// Adds a frame that is shown for `centiseconds`: a palette of its own, and only the pixels that changed. `rgb`: width ×
-// height pixels of bytes R, G, B, row 0 on top.
+// Adds a frame shown for `centiseconds`, with its own palette and only the changed pixels. `rgb`: width × height pixels
+// of bytes R, G, B, row 0 on top.
 void add_gif_frame(GifWriter* gif, const std::uint8_t* rgb, std::uint32_t centiseconds);
 void end_gif(GifWriter* gif);
 

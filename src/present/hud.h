@@ -14,18 +14,18 @@ struct Canvas {
   Rotation rotation = Rotation::none;
 };
 
-// Divides the levels of a pixel of the picture.
+// Divides the levels of a picture's pixel.
 void dim_pixel(const Canvas& canvas, int column, int row, int divisor);
 
 void set_pixel(const Canvas& canvas, int column, int row, const std::uint8_t levels[3]);
 
-// Picture pixels covered by a box of that much text, including its margin. `scale`: pixels per font pixel, at least 1.
+// Size in pixels of a box with that much text, including its margin. `scale`: pixels per font pixel, at least 1.
 int text_box_width(int characters, int scale);
 int text_box_height(int lines, int scale);
 
 // Draws the box with its top left corner at (column, row) of the picture, as wide as its longest line, clipped to the
-// picture. Characters other than printable ASCII show as '?'. The picture below is dimmed to a quarter, so draw over
-// freshly packed rows: those from row to row + text_box_height().
+// picture. Characters other than printable ASCII appear as '?'. Dims the picture below to a quarter, so first repack
+// the covered rows: from row to row + text_box_height().
 void draw_text_box(const Canvas& canvas, int column, int row, int scale, const char* const* lines, int line_count);
 
 }  // namespace pocketray

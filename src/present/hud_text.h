@@ -19,7 +19,7 @@ void add_hud_line(HudText* text, const char* format, ...) __attribute__((format(
 // Adds a text in as many lines as it needs, broken between words where possible.
 void add_hud_text(HudText* text, const char* words);
 
-// Rows of the picture that the display covers.
+// Number of picture rows that the display covers.
 std::uint32_t hud_rows(const HudText& text);
 void draw_hud_text(const HudText& text, const PixelFormat& format, Rotation rotation, int width, int height,
                    void* pixels, int line_bytes);

@@ -9,7 +9,7 @@
 namespace pocketray {
 namespace {
 
-// Bayer's matrix of order 8: each of 0 … 63 once, every power-of-two sub-tile evenly spread [Bayer 1973, fig. 4].
+// Bayer's matrix of order 8: each of 0 … 63 once, evenly spread in every power-of-two sub-tile [Bayer 1973, fig. 4].
 // Bit by bit: the lowest bits of x ^ y and y become the highest of the value.
 constexpr int bayer(int x, int y) {
   int value = 0;
@@ -34,7 +34,7 @@ std::uint32_t channel_mask(const PixelChannel& channel) {
   return static_cast<std::uint32_t>(value_max(channel)) << channel.offset;
 }
 
-// The channel's value nearest to an 8-bit level: round(level · max / 255).
+// Returns the channel's value nearest to an 8-bit level: round(level · max / 255).
 std::uint32_t quantize_level(const PixelChannel& channel, int level) {
   return static_cast<std::uint32_t>((2 * level * value_max(channel) + 255) / 510) << channel.offset;
 }
@@ -74,7 +74,7 @@ inline std::uint32_t pack_dithered(const ChannelPacker& channel, float linear, s
   return ((n + (n >> 16) + 1) >> 16) << channel.shift;
 }
 
-// The owner of a page sees bytes, we see pixels. Typed for alignment: with memcpy(), ARMv5 would store byte by byte.
+// The page's owner sees bytes, we see pixels. Typed for alignment: with memcpy(), ARMv5 would store byte by byte.
 using Pixel16 = std::uint16_t __attribute__((may_alias));
 using Pixel32 = std::uint32_t __attribute__((may_alias));
 
@@ -98,7 +98,7 @@ inline void store_unaligned(unsigned char* at, std::uint32_t pixel, int bytes) {
   if (bytes == 4) std::memcpy(at, &pixel, sizeof pixel);
 }
 
-// Whether the pixels are the same, with nothing to count at any exposure: neither negative nor infinite nor NaN.
+// Returns whether the pixels are equal and need no counting at any exposure: neither negative nor infinite nor NaN.
 inline bool looks_alike(const Vec3& a, const Vec3& b) {
   const std::uint32_t most = float_bits(kRadianceMax);
   for (int i = 0; i < 3; ++i)
@@ -106,7 +106,7 @@ inline bool looks_alike(const Vec3& a, const Vec3& b) {
   return true;
 }
 
-// One pixel of a row of the picture, with the row's dither thresholds.
+// Packs one pixel of a picture row with the row's dither thresholds.
 template <bool kDither>
 inline std::uint32_t packed(const Packer& packer, Vec3 c, const std::uint16_t* thresholds, int column,
                             ToneCounts* counts) {
@@ -126,7 +126,7 @@ ToneCounts pack_rows_of(const Vec3* radiance, int width, int height, int row_beg
   ScreenPosition right = screen_position(1, 0, width, height, rotation);
   ScreenPosition origin = screen_position(0, 0, width, height, rotation);
   int step_x = right.x - origin.x,
-      step_y = right.y - origin.y;  // screen step from one column of the picture to the next
+      step_y = right.y - origin.y;  // screen step from one picture column to the next
   std::ptrdiff_t step = static_cast<std::ptrdiff_t>(step_y) * line_bytes + step_x * kBytes;
   for (int row = row_begin; row < row_end; ++row) {
     const Vec3* in = radiance + static_cast<std::size_t>(row) * static_cast<std::size_t>(width);

@@ -25,17 +25,17 @@ constexpr PixelFormat kXbgr8888 = {32, {0, 8}, {8, 8}, {16, 8}, {}};
 constexpr PixelFormat kRgb888 = {24, {0, 8}, {8, 8}, {16, 8}, {}};  // bytes R, G, B, as in PNG and PPM
 constexpr PixelFormat kBgr888 = {24, {16, 8}, {8, 8}, {0, 8}, {}};
 
-// Whether pack_rows() can write it: 16, 24 or 32 bits, channels inside the pixel and not overlapping.
+// Returns whether pack_rows() can write the format: 16, 24 or 32 bits, channels inside the pixel and not overlapping.
 bool pixel_format_valid(const PixelFormat& format);
 
 // Clockwise rotation of the picture on the screen. A quarter turn puts a picture of width × height on height × width
 // pixels.
 enum class Rotation : std::uint8_t { none, quarter, half, three_quarters };
 
-// From 0, 90, 180 or 270 degrees; false for anything else.
+// Converts 0, 90, 180 or 270 degrees; returns false for anything else.
 bool rotation_from_degrees(int degrees, Rotation* rotation);
 
-// Position on the screen of pixel (column, row) of the picture, in screen pixels and rows.
+// Screen position of the picture's pixel (column, row), in pixels and rows.
 struct ScreenPosition {
   int x, y;
 };
@@ -53,22 +53,22 @@ inline ScreenPosition screen_position(int column, int row, int width, int height
   return {column, row};
 }
 
-// One pixel of 8-bit levels, quantised to the format's nearest value. 565 to levels and back is the identity.
+// Packs 8-bit levels, quantised to the format's nearest values. 565 to levels and back is the identity.
 std::uint32_t pack_levels(const PixelFormat& format, int red, int green, int blue);
-// The 8-bit levels of a pixel, rounded to nearest.
+// Returns the 8-bit levels of a pixel, rounded to nearest.
 void unpack_levels(const PixelFormat& format, std::uint32_t pixel, int levels[3]);
 std::uint32_t read_pixel(const PixelFormat& format, const void* pixel);
 void write_pixel(const PixelFormat& format, void* pixel, std::uint32_t value);
 
 // Packs rows [row_begin, row_end). `radiance` is the whole picture, width × height, row 0 on top; `pixels` is the
 // screen's top left, `line_bytes` (a multiple of 2 or 4 for 16 or 32 bits) the distance between screen rows. Displays
-// exposure × radiance. `dither`: ordered, 8 × 8, fixed to the picture whatever its rotation; its mean over a tile is
-// within 1/64 step of the display value. Returns counts of values that could not be shown. Several threads may pack
-// rows at once.
+// exposure × radiance. `dither`: ordered, 8 × 8, fixed to the picture in any rotation; its mean over a tile is within
+// 1/64 step of the display value. Returns counts of values that could not be shown. Several threads may pack rows at
+// once.
 ToneCounts pack_rows(const Vec3* radiance, int width, int height, int row_begin, int row_end, float exposure,
                      const PixelFormat& format, Rotation rotation, bool dither, void* pixels, int line_bytes);
 
-// The pixels of the spans, consecutive and unpadded, with the bytes that pack_rows() writes without rotation.
+// Packs the pixels of the spans, consecutive and unpadded, into the bytes that pack_rows() writes without rotation.
 void pack_spans(const Vec3* radiance, int width, const Span* spans, std::uint32_t span_count, float exposure,
                 const PixelFormat& format, bool dither, std::uint8_t* pixels);
 

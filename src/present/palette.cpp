@@ -1,6 +1,6 @@
-// Variance-based quantisation [Wan, Prusinkiewicz and Wong 1990, Color Research and Application 15(1)]: the box of
-// colours with the largest squared error is divided until there are enough. Boxes are divided at their mean, not at
-// the plane of least error.
+// Variance-based quantisation [Wan, Prusinkiewicz and Wong 1990, Color Research and Application 15(1)]: divides the box
+// of colours with the largest squared error until there are enough. Splits boxes at their mean rather than at the plane
+// of least error.
 #include "present/palette.h"
 
 #include <algorithm>
@@ -10,14 +10,14 @@
 namespace pocketray {
 namespace {
 
-// Squared differences count as much as the eye sees them: about the shares of luminance.
+// Weights of squared differences by visibility: about the luminance weights.
 constexpr std::uint32_t kWeights[3] = {3, 6, 1};
 
 struct ColorBox {
   std::uint32_t begin, end;  // of the samples
   std::uint64_t sums[3];
-  double error;  // Σ of weighted squared differences from the mean
-  int axis;      // that has the largest part of it
+  double error;  // sum of weighted squared differences from the mean
+  int axis;      // axis with the largest part of it
 };
 
 ColorBox measure(Array<Rgb> samples, std::uint32_t begin, std::uint32_t end) {

@@ -1,4 +1,4 @@
-// Palettes: the colours that stand for a picture's pixels in formats with few colours.
+// Palettes: the colours that represent a picture's pixels in formats with few colours.
 #pragma once
 #include <cstdint>
 
@@ -19,12 +19,12 @@ struct Palette {
   Rgb colors[kPaletteMax];
 };
 
-// The colours of the samples themselves if at most `count_max` differ, otherwise as many that stand for all. Changes
-// the order of the samples, of which there are 1 to 65,536; the palette depends on their colours alone.
+// Returns the samples' own colours if at most `count_max` differ, otherwise as many representatives. Reorders the
+// samples, of which there are 1 to 65,536; the palette depends only on their colours.
 constexpr std::uint32_t kPaletteSampleMax = 1u << 16;
 void make_palette(Array<Rgb> samples, std::uint32_t count_max, Palette* palette);
 
-// Index of the nearest colour, the first of several.
+// Returns the index of the nearest colour, on ties the first.
 std::uint32_t nearest_color(const Palette& palette, const Rgb& color);
 
 }  // namespace pocketray

@@ -24,7 +24,7 @@ std::size_t animated_png_need(int width, int height) {
 
 void write_png_frame_count(const ByteSink& sink, std::uint32_t frame_count) {
   CHECK_GT(frame_count, 0u);
-  std::uint8_t control[8] = {};  // repeated without end
+  std::uint8_t control[8] = {};  // loops forever
   put_big_endian(frame_count, control);
   write_png_chunk(sink, "acTL", control, sizeof control);
 }
@@ -46,7 +46,7 @@ Status add_png_frame(AnimatedPng* png, const std::uint8_t* rgb, std::uint16_t de
   PixelBox box = {0, 0, png->width, png->height};
   if (png->has_frame) box = find_changed(png->last.data, rgb, png->width, png->height);
   if (box.width == 0) box.width = box.height = 1;
-  std::uint8_t control[26] = {};  // stays, and replaces what was there
+  std::uint8_t control[26] = {};  // keep the frame, and replace what it covers
   put_big_endian(png->sequence++, control);
   put_big_endian(static_cast<std::uint32_t>(box.width), control + 4);
   put_big_endian(static_cast<std::uint32_t>(box.height), control + 8);

@@ -15,10 +15,10 @@ namespace {
 constexpr int kWindowBits = 13, kMemoryLevel = 7;
 constexpr std::size_t kDeflateBytes = (1u << (kWindowBits + 2)) + (1u << (kMemoryLevel + 9));
 constexpr std::size_t kChunkBytes = 8192;  // of compressed data
-constexpr std::size_t kNumberBytes = 4;    // of the sequence before it, in an animation
+constexpr std::size_t kNumberBytes = 4;    // of the sequence number before it, in an animation
 constexpr int kPixelBytes = 3;
 
-// [PNG 3rd edition, sec. 9.4].
+// Predictor of [PNG 3rd edition, sec. 9.4].
 int paeth(int left, int above, int above_left) {
   int estimate = left + above - above_left;
   int to_left = std::abs(estimate - left), to_above = std::abs(estimate - above),
@@ -27,7 +27,7 @@ int paeth(int left, int above, int above_left) {
   return to_above <= to_above_left ? above : above_left;
 }
 
-// A row as differences from its Paeth estimates, behind the filter's number. `above`: the row before, or null.
+// Writes a row as differences from its Paeth estimates, after the filter's number. `above`: the previous row, or null.
 void filter_row(const std::uint8_t* row, const std::uint8_t* above, std::size_t count, std::uint8_t* filtered) {
   constexpr std::uint8_t kPaeth = 4;
   *filtered++ = kPaeth;
@@ -57,7 +57,7 @@ void write_data(PngEncoder* e, std::size_t count) {
   write_png_chunk(e->sink, "fdAT", e->chunk, kNumberBytes + count);
 }
 
-// Compresses the stream's input, and with Z_FINISH all that is left, writing each chunk that fills.
+// Compresses the stream's input, with Z_FINISH all that is left, and writes each chunk that fills up.
 void compress(PngEncoder* e, int flush) {
   int result = Z_OK;
   do {
@@ -114,7 +114,7 @@ void write_png_head(const ByteSink& sink, int width, int height) {
 }
 
 std::size_t png_pixels_need(int width) {
-  constexpr std::size_t kStructures = 16 << 10;  // zlib's besides its tables; measured by image_file_test.cpp
+  constexpr std::size_t kStructures = 16 << 10;  // zlib besides its tables; measured by image_file_test.cpp
   return kDeflateBytes + kStructures + arena_need(kNumberBytes + kChunkBytes) +
          arena_need(kPixelBytes * static_cast<std::size_t>(width) + 1);
 }

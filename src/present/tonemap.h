@@ -9,7 +9,7 @@
 
 namespace pocketray {
 
-// Counts of radiance values that no display can show, per channel, after exposure.
+// Numbers of radiance values that no display can show, per channel, after exposure.
 struct ToneCounts {
   std::uint64_t nan = 0;       // shown as 0
   std::uint64_t infinite = 0;  // +Inf, shown as 1; -Inf is negative
@@ -27,12 +27,12 @@ constexpr std::uint32_t kToneBitsOne = 127u << 23;
 
 struct ToneTables {
   std::uint8_t level[kToneBucketCount];      // 8-bit level at the lower edge of a bucket
-  std::uint32_t threshold[257];              // smallest float, as bits, of a level; [256]: never reached
+  std::uint32_t threshold[257];              // smallest float, as bits, of each level; [256]: never reached
   std::uint16_t fine[kToneBucketCount + 1];  // 16-bit display value at the lower edge of a bucket
 };
 extern const ToneTables kToneTables;
 
-// Values outside [0, 1): returns 0 or 1 as displayed, and counts them. Not inlined, because they are rare.
+// Returns whether a value outside [0, 1) is displayed as 1, not 0, and counts it. Not inlined, because it is rare.
 bool tone_saturates(std::uint32_t bits, ToneCounts* counts);
 
 // 8-bit sRGB level; equal to srgb_level() for every float.

@@ -7,13 +7,13 @@
 namespace pocketray {
 namespace {
 
-// Of a row's pixels, from which the price of the whole row is extrapolated. Chosen: no more than fourfold, since single
-// pixels cost up to twice as much as packets of them; with a larger part, rows of moving scenes would keep old prices.
+// Minimum part of a row's pixels from which its whole price is extrapolated. Chosen: fourfold at most, since single
+// pixels cost up to twice as much as packets; with a larger minimum, rows of moving scenes would keep old prices.
 constexpr double kPartMin = 0.25;
-// The cap as an integer. Costs of rows are rounded up, so kImageSideMax rows lose at most 2⁻¹⁷ of it.
+// The cap in integer units. Costs of rows are rounded up, so kImageSideMax rows lose at most 2⁻¹⁷ of it.
 constexpr double kUnitsOfCap = 0x1p30;
 
-// Entry of a row table. NaN and negative values count as 0.
+// Converts to an entry of a row table. NaN and negative values count as 0.
 std::uint64_t table_entry(double x) {
   constexpr double max = static_cast<double>(kRowTableMax);
   if (!(x > 0)) return 0;
@@ -54,7 +54,7 @@ void fold_device_rows(CostModel* model) {
     if (!(row.device_ns_seen > 0)) scale(&row.device_ns, after / before);
 }
 
-// Rows of the device's own light: what they took is a part of the whole rows' time, the same for all.
+// Device rows with its own light: their time as a fraction of a whole row's, common to all rows.
 void fold_own_light(CostModel* model) {
   double own = 0, whole = 0;
   for (const RowModel& row : model->rows)
@@ -91,13 +91,13 @@ void fold_times(ByteTimes* times, Smoothed* ns_per_byte) {
   *times = ByteTimes();
 }
 
-// Factor from integer costs of a problem to the caller's unit.
+// Factor from a problem's integer costs to the caller's unit.
 double cost_scale(const SplitWish& wish) {
   if (wish.goal == SplitGoal::time_and_cost) return is_amount(wish.ns_per_cost) ? wish.ns_per_cost : 0;
   return wish.cap > 0 && is_amount(wish.cap) ? kUnitsOfCap / wish.cap : 1e30;
 }
 
-// Writes the prefix sums of entry(row) into the next table of the model.
+// Writes the prefix sums of entry(row) into the model's next table.
 template <class Entry>
 RowTable add_table(CostModel* model, std::uint32_t* table_count, Entry entry) {
   std::uint64_t* table = model->tables.data + std::size_t(*table_count) * (model->rows.count + 1);
@@ -167,8 +167,8 @@ void observe_server_rows(CostModel* model, std::uint32_t server, std::uint32_t r
     row->server_ns_seen = is_amount(work_ns) && part >= kPartMin ? static_cast<float>(work_ns / row_count / part) : 0;
     row->part_seen = static_cast<float>(part);
     row->server_seen = static_cast<std::uint8_t>(server);
-    // Bytes are counted, not timed: there is no noise to smooth, and under a moving camera the last frame is the best
-    // guess. An unchanged row takes no bytes, which is as good a measurement as any.
+    // Bytes are counted, not timed: there is no noise to smooth, and with a moving camera the last frame is the best
+    // guess. An unchanged row takes no bytes, which is a valid measurement.
     if (is_amount(bytes)) row->bytes = Smoothed(), smooth(&row->bytes, std::fmax(1, bytes / row_count));
   }
 }

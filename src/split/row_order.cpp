@@ -7,7 +7,7 @@
 namespace pocketray {
 namespace {
 
-// Measured by the overlap tests of split_report: smaller blocks need more messages, larger ones make the link wait. Blocks
+// Measured by split_report's overlap tests: smaller blocks need more messages, larger ones make the link wait. Blocks
 // lie on a grid of the picture, so that rows are cut as in the last frame.
 constexpr std::uint32_t kBlockRows = 24, kBlocksMax = 40, kRunRowsMin = 2;
 static_assert(kBlocksMax + 1 < kOrderRunsMax, "some blocks can be cut");
@@ -28,15 +28,15 @@ struct Cutter {
     return {static_cast<double>(server->render_ns[rows.end] - server->render_ns[rows.begin]),
             static_cast<double>(server->transfer_ns[rows.end] - server->transfer_ns[rows.begin]) * send_factor};
   }
-  // The part of the two times that is the link's.
+  // The link's fraction of the row range's total time.
   double link_part(RowRange rows) const {
     const Stages s = of(rows);
     return s.send_ns + s.trace_ns > 0 ? s.send_ns / (s.send_ns + s.trace_ns) : 0;
   }
 };
 
-// Those that keep the link busy the longest for their time on the server first. Of rows to be cut as finely as wanted,
-// that is Johnson's order, and no other has more to send at any time. Of equal ones, the lowest first.
+// Sorts blocks that keep the link busy longest relative to their server time first. For arbitrarily fine cuts this is
+// Johnson's order, and no other order has more to send at any time. On ties, the lowest block comes first.
 void sort_blocks(Cutter* c) {
   std::sort(c->blocks, c->blocks + c->block_count, [c](RowRange a, RowRange b) {
     const double x = c->link_part(a), y = c->link_part(b);
@@ -44,8 +44,8 @@ void sort_blocks(Cutter* c) {
   });
 }
 
-// Rows of a run that the first stage finishes while the second still has work for `slack_ns`, taken from the end of the
-// block whose turn comes first; at least somewhat more than `rows_before`.
+// Number of rows of a run that the first stage finishes while the second still has work for `slack_ns`, taken from the
+// end of the next block; at least somewhat more than `rows_before`.
 template <class First>
 std::uint32_t fitting_rows(RowRange block, double slack_ns, std::uint32_t rows_before, First first_ns) {
   const std::uint32_t all = block.end - block.begin;
@@ -68,8 +68,8 @@ void order_rows(const ServerTables& server, std::uint32_t row_begin, std::uint32
     c.blocks[c.block_count++] = {std::max(row_begin, (end - 1) / block_rows * block_rows), end};
   }
   sort_blocks(&c);
-  // From the front, runs are as long as the link has something to send meanwhile; from the back, as the server has
-  // something to trace while they are sent.
+  // From the front, runs last as long as the link has something to send meanwhile; from the back, as long as the server
+  // has something to trace while they are sent.
   RowRange back[kOrderRunsMax];
   std::uint32_t front_blocks = 0, back_count = 0, spare = kOrderRunsMax - c.block_count, rows = 0;
   order->run_count = 0;

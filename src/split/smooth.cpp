@@ -3,11 +3,11 @@
 namespace pocketray {
 namespace {
 
-// Tuned with tests/split/simulation_test.cpp: frames to settle against jitter of the split.
+// Tuned with tests/split/simulation_test.cpp: frames to settle versus jitter of the split.
 constexpr double kWeight = 0.25;      // of a new sample in the exponential mean
 constexpr double kNoise = 0.125;      // samples this close to the value indicate no change
-constexpr double kOutlierFactor = 2;  // samples further off wait for confirmation by others
-constexpr int kRunMax = 3;            // this many in a row on one side are a change, and their mean is the new value
+constexpr double kOutlierFactor = 2;  // samples farther off wait for confirmation
+constexpr int kRunMax = 3;            // this many in a row on one side are a change; their mean becomes the value
 constexpr double kSampleMin = 1e-30, kSampleMax = 1e30;  // floats hold them and the products of their ratios
 
 double clamp(double x) { return x < kSampleMin ? kSampleMin : x > kSampleMax ? kSampleMax : x; }

@@ -1,5 +1,5 @@
-// Smoothed: a quantity measured over the frames. Follows drifts, ignores a single outlier, and adopts a lasting change
-// at once.
+// Smoothed: a quantity measured over frames. Follows drifts, ignores single outliers, and adopts lasting changes at
+// once.
 #pragma once
 #include <cstdint>
 
@@ -16,7 +16,7 @@ inline double value_or(const Smoothed& s, double unknown) {
   return is_known(s) ? static_cast<double>(s.value) : unknown;
 }
 
-// Adds a sample. Invalid ones (NaN, infinite, zero, or negative: a clock that stood still or went back) change nothing.
+// Adds a sample. Invalid samples (NaN, infinite, zero, or negative, as from a stopped or reset clock) change nothing.
 // The value stays positive and finite.
 void smooth(Smoothed* s, double sample);
 

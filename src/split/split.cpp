@@ -9,7 +9,7 @@ constexpr std::uint64_t kNever = ~std::uint64_t(0);
 
 std::uint64_t larger(std::uint64_t a, std::uint64_t b) { return a > b ? a : b; }
 
-// Time of the device, and of the link into it, if the device renders the rows above `rows`.
+// Time of the device, and of its incoming link, if the device renders the rows above `rows`.
 std::uint64_t near_ns(const SplitProblem& p, std::uint32_t rows) {
   std::uint64_t device = p.device_ns[rows] + (p.unpack_ns[p.row_count] - p.unpack_ns[rows]);
   if (rows > 0) device = larger(device + p.device_start_ns, p.device_least_ns);
@@ -18,8 +18,8 @@ std::uint64_t near_ns(const SplitProblem& p, std::uint32_t rows) {
 }
 
 // Sets least[b] to the least cost of giving rows 0 … b − 1 to the device and the servers up to this one, with no band
-// longer than time_ns. The first row at which a band short enough may begin to end at b never falls as b grows, so the
-// cheapest band is a sliding minimum.
+// longer than time_ns. The first row at which a short enough band that ends at b may begin never decreases as b grows,
+// so the cheapest band is a sliding minimum.
 void extend_by_server(const SplitProblem& p, const ServerTables& server, std::uint64_t time_ns, SplitWorkspace* w,
                       std::uint16_t* band_begin) {
   std::uint16_t* window = w->window.data;  // candidate first rows; their costs ascend from `first` on
@@ -39,8 +39,8 @@ void extend_by_server(const SplitProblem& p, const ServerTables& server, std::ui
   }
 }
 
-// The least cost of a split in which device and link take at most time_ns and each server at most servers_ns; kNever if
-// there is none. w->band_begin then leads to the split.
+// Returns the least cost of a split in which device and link take at most time_ns and each server at most servers_ns;
+// kNever if there is none. w->band_begin then describes the split.
 std::uint64_t least_cost(const SplitProblem& p, std::uint64_t time_ns, std::uint64_t servers_ns, SplitWorkspace* w) {
   ++w->search_count;
   std::uint32_t entries = p.row_count + 1;
@@ -58,7 +58,7 @@ std::uint64_t least_cost(const SplitProblem& p, std::uint64_t time_ns, SplitWork
   return least_cost(p, time_ns, time_ns, w);
 }
 
-// The split found by the last least_cost().
+// Returns the split found by the last least_cost().
 Split split_found(const SplitProblem& p, const SplitWorkspace& w) {
   Split split;
   split.server_count = p.server_count;
@@ -88,7 +88,7 @@ void keep_better(const SplitProblem& p, const Split& split, Split* best) {
   if (now < before || (now == before && split.cost < best->cost)) *best = split;
 }
 
-// The fastest split that costs no more than the cap, by bisection: costs fall as time is allowed. `bound` is a split
+// Returns the fastest split within the cost cap, by bisection: costs fall as more time is allowed. `bound` is a split
 // that meets the cap.
 Split find_soonest(const SplitProblem& p, Split bound, SplitWorkspace* w) {
   std::uint64_t low = 0, high = bound.time_ns;
@@ -104,9 +104,9 @@ Split find_soonest(const SplitProblem& p, Split bound, SplitWorkspace* w) {
   return split_found(p, *w);
 }
 
-// Looks for a better sum of time and cost among splits between `soonest` and `cheapest`, which take longer than the
-// former and cost less. A split that takes between t1 and t2 costs at least what the split at t2 costs, so the interval
-// matters only if t1 plus that cost beats the best; halves the intervals that remain.
+// Looks for a better sum of time and cost among splits between `soonest` and `cheapest` in both time and cost. A split
+// that takes between t1 and t2 costs at least what the split at t2 costs, so the interval matters only if t1 plus that
+// cost beats the best; halves the remaining intervals.
 void weigh_time_against_cost(const SplitProblem& p, const Split& soonest, const Split& cheapest, SplitWorkspace* w,
                              Split* best) {
   struct Gap {
@@ -137,8 +137,8 @@ void weigh_time_against_cost(const SplitProblem& p, const Split& soonest, const 
   }
 }
 
-// Among equally good splits, one whose slowest server finishes soonest. If device or link bound the time, other splits
-// may leave one server idle while its neighbour is predicted to finish with no time to spare.
+// Picks, among equally good splits, one whose slowest server finishes soonest. If device or link bound the time, other
+// splits may idle one server while its neighbour is predicted to finish with no time to spare.
 Split balance(const SplitProblem& p, const Split& best, SplitWorkspace* w) {
   std::uint64_t low = 0, high = best.time_ns;
   while (low < high) {
@@ -208,7 +208,7 @@ Split find_split(const SplitProblem& p, SplitWorkspace* w) {
   if (!cheapest.cap_met) return cheapest;
   Split soonest = find_soonest(p, cheapest, w), best = soonest;
   if (p.weigh_cost) {
-    // The cheapest of all may take longer than necessary.
+    // The cheapest split may take longer than necessary.
     keep_better(p, cheapest, &best);
     weigh_time_against_cost(p, soonest, cheapest, w, &best);
   }

@@ -1,6 +1,6 @@
 // The split of a frame's rows among the device and its servers that finishes soonest, or also weighs cost. Rows
 // [boundary[0], boundary[1]) are the first server's, and so on downward; the device has the rows above boundary[0].
-// Integers throughout: the same split on every CPU, and no float where the unit is undefined.
+// Integers throughout: the split is equal on every CPU, and no float hides an undefined unit.
 #pragma once
 #include <cstdint>
 
@@ -9,11 +9,11 @@
 
 namespace pocketray {
 
-// Chosen; up to three are measured (tests/split_report/FIGURES.md). The tables and the effort of find_split() grow with
-// it.
+// Chosen; up to three are measured (tests/split_report/FIGURES.md). Table sizes and the effort of find_split() grow
+// with it.
 constexpr std::uint32_t kServerCountMax = 8;
-// Of one row in any table; 18 minutes as nanoseconds. Derived: sums over kImageSideMax rows are at most 2⁵³, exact as
-// doubles.
+// Limit per row in any table; 18 minutes as nanoseconds. Derived: sums over kImageSideMax rows are at most 2⁵³, exact
+// as doubles.
 constexpr std::uint64_t kRowTableMax = std::uint64_t(1) << 40;
 
 // Prefix sums: table[r] is the sum over rows 0 … r − 1; row_count + 1 entries, at most kRowTableMax per row.
@@ -23,11 +23,11 @@ struct ServerTables {
   bool usable = false;             // false: gets no rows, its tables may be null
   RowTable render_ns = nullptr;    // to render a row on the server
   RowTable transfer_ns = nullptr;  // to send it, as it compresses
-  RowTable cost = nullptr;         // of transferring it
+  RowTable cost = nullptr;         // of the transfer
   std::uint64_t start_ns = 0;      // once per band: latency and preparation; at most kRowTableMax
   std::uint32_t chunk_rows = 1;    // rows sent at once
-  std::uint64_t chunk_row_ns = 0;  // smaller of rendering and sending a row: the first or last chunk in the pipeline
-                                   // adds it to the larger; at most kRowTableMax
+  std::uint64_t chunk_row_ns = 0;  // smaller of rendering and sending a row: the pipeline's first or last chunk adds it
+                                   // to the larger; at most kRowTableMax
 };
 
 struct SplitProblem {
@@ -56,31 +56,31 @@ struct Split {
 struct SplitWorkspace {
   Array<std::uint64_t> least, least_before;
   Array<std::uint16_t> window, band_begin;
-  std::uint32_t search_count;  // least costs computed in the last call
+  std::uint32_t search_count;  // number of least costs computed in the last call
 };
 std::size_t split_need(std::uint32_t row_count, std::uint32_t server_count);
 SplitWorkspace make_split_workspace(std::uint32_t row_count, std::uint32_t server_count, Arena* arena);
 
-// Predicted time of a band of rows on a server: the larger of rendering and sending, which overlap, plus one chunk of
-// the smaller, after the start. 0 for no rows. Never decreases as a band grows.
+// Predicted time of a band of rows on a server: the start, the larger of rendering and sending, which overlap, and one
+// chunk of the smaller. 0 without rows. Never decreases as a band grows.
 std::uint64_t band_ns(const ServerTables& server, std::uint32_t row_begin, std::uint32_t row_end);
 
-// Sets time_ns and cost of a split from its boundaries: the time is when the last of device, link and servers finishes.
+// Computes time_ns and cost from the boundaries: the time is when the last of device, link and servers finishes.
 void predict_split(const SplitProblem& problem, Split* split);
 
-// The best of all splits that cost at most the cap: least time, then least cost; or least time + cost. Of equally good
-// splits, the one whose slowest server finishes soonest. Effort: about 30 · servers · rows steps, 60 with several
-// servers; at most (kSearchMax + 60) · servers · rows.
+// Returns the best of all splits that cost at most the cap: least time, then least cost; or least time + cost. Among
+// equally good splits, the one whose slowest server finishes soonest. Effort: about 30 · servers · rows steps, 60 with
+// several servers; at most (kSearchMax + 60) · servers · rows.
 Split find_split(const SplitProblem& problem, SplitWorkspace* workspace);
 
-// The same with hysteresis: keeps `previous` while it, and the slowest of its servers, is predicted to be worse by no
-// more than a kDeadBandDivisor-th of the time.
+// find_split() with hysteresis: keeps `previous` while it, and the slowest of its servers, is predicted to be worse by
+// at most 1/kDeadBandDivisor of the time.
 Split next_split(const SplitProblem& problem, const Split& previous, SplitWorkspace* workspace);
 
-// Chosen: more than any problem of tests/split/split_test.cpp needs. It bounds the effort; with less, more splits would
+// Chosen: more than any problem of tests/split/split_test.cpp needs. Bounds the effort; with less, more splits would
 // not be exact.
 constexpr std::uint32_t kSearchMax = 1024;
-constexpr std::uint64_t kDeadBandDivisor = 50;  // 2 %: measurement noise moves no rows, and it is less than half of the
-                                                // 5 % by which a split may miss the best
+constexpr std::uint64_t kDeadBandDivisor = 50;  // 2 %: measurement noise moves no rows; less than half of the 5 % by
+                                                // which a split may miss the best
 
 }  // namespace pocketray

@@ -94,7 +94,7 @@ std::uint32_t due_checks(CheckSchedule* s, double checks, Rng* random) {
   s->paid += checks < kChecksPaidMax ? checks : kChecksPaidMax;
   std::uint32_t count = 0;
   for (; s->due < s->paid && count < kSpotChecksMax; ++count) s->due = ++s->interval + next_double(random);
-  if (s->due < s->paid) s->paid = s->interval;  // checks beyond the maximum at once are not made up for
+  if (s->due < s->paid) s->paid = s->interval;  // excess over the maximum per frame is dropped
   // Only the difference matters; kept small, it stays exact.
   s->paid -= s->interval, s->due -= s->interval, s->interval = 0;
   return count;

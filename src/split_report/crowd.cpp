@@ -28,7 +28,7 @@ enum class EventKind : std::uint8_t {
 struct Event {
   std::uint64_t ns, order;
   EventKind kind;
-  std::uint32_t client, server;  // server: of the client's list; of a slice: of all
+  std::uint32_t client, server;  // server: index in the client's list; for a slice: global index
   std::uint32_t frame, begin, end;
   double price;
 };
@@ -39,10 +39,10 @@ struct Later {
 
 // A client's connection at the server.
 struct Place {
-  std::uint32_t client, server;  // server: of the client's list
+  std::uint32_t client, server;  // server: index in the client's list
   Account account;
   std::uint32_t frame = 0, begin = 0, end = 0;  // rows left to trace, from the bottom upward
-  std::uint64_t took_ns = 0;                    // of the frame
+  std::uint64_t took_ns = 0;                    // for the frame
 };
 
 struct ServerState {
@@ -71,7 +71,7 @@ struct ClientState {
   std::vector<Row> rows;
   Connection connections[kServerCountMax];
   std::uint32_t frame = 0, missing = 0, device_rows = 0;
-  std::uint32_t row = 0;  // in work on the device
+  std::uint32_t row = 0;  // being rendered on the device
   std::uint64_t begin_ns = 0, link_free_ns = 0;
   double share_before = -1;
   double share_sum = 0, change_sum = 0, ns_sum = 0;
@@ -105,7 +105,7 @@ bool is_there(const Simulation& s, std::uint32_t server) {
   return s.now >= given.begin_ns && s.now < given.end_ns;
 }
 
-// ---- The server, as remote/server/work.cpp has it
+// ---- The server, like remote/server/work.cpp
 
 bool has_work(const Place& place) { return place.begin < place.end; }
 
@@ -193,17 +193,17 @@ void take_request(Simulation* s, const Event& e) {
   if (server->at_work < 0) begin_slice(s, index);
 }
 
-// ---- The client, as remote/client has it
+// ---- The client, like remote/client
 
 void render_next_row(Simulation* s, std::uint32_t index) {
   ClientState* client = s->clients[index].get();
   while (client->row < s->crowd->row_count && client->rows[client->row] == Row::done) ++client->row;
-  CHECK_LT(client->row, s->crowd->row_count);  // as some row is missing
+  CHECK_LT(client->row, s->crowd->row_count);  // since some row is missing
   plan(s, given(*s, index).pixel_ns * s->crowd->row_pixels,
        {0, 0, EventKind::row, index, 0, client->frame, client->row, 0, 0});
 }
 
-// Connects to the servers that have come, and hears from those that it has not asked for a while.
+// Connects to new servers, and pings those that it has not asked for a while.
 void tend_connections(Simulation* s, std::uint32_t index) {
   ClientState* client = s->clients[index].get();
   const CrowdClient& c = given(*s, index);

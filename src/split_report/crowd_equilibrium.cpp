@@ -8,10 +8,10 @@ namespace pocketray {
 namespace {
 
 constexpr int kRounds = 150, kBisections = 25;
-constexpr double kStep = 0.05;  // of the way to the prices that the answers make: chosen, small enough to rest
+constexpr double kStep = 0.05;  // towards the prices that the answers imply: chosen, small enough to converge
 
-// Time of the client's best frame if a pixel of its i-th server takes prices[i] times its work, and the part of that
-// time, busy[i], in which each server has work for it.
+// Time of the client's best frame if a pixel of its i-th server takes prices[i] times its work; busy[i] receives the
+// fraction of that time in which each server has work for it.
 double best_frame_ns(const Crowd& crowd, const CrowdClient& c, const double* prices, double* busy) {
   const double pixels = double(crowd.row_pixels) * crowd.row_count, alone = pixels * c.pixel_ns;
   const double start = 2 * static_cast<double>(c.latency_ns), byte_ns = crowd.pixel_bytes * c.ns_per_byte;

@@ -13,9 +13,9 @@ namespace pocketray {
 namespace {
 
 constexpr std::uint32_t kClientCounts[] = {1, 2, 3, 4, 6, 8, 12, 16};
-constexpr std::uint32_t kCrowdRows = 60;                // into which a picture is divided at most: whole lines each
-constexpr std::uint64_t kStaggerNs = 37'000'000;        // between starts of clients; chosen: no frame time's multiple
-constexpr double kSettleNs = 8e9, kWatchedFrames = 20;  // before figures are taken; of the device alone, then
+constexpr std::uint32_t kCrowdRows = 60;                // maximum number of parts of a picture: whole lines each
+constexpr std::uint64_t kStaggerNs = 37'000'000;        // between starts; chosen: no multiple of a frame time
+constexpr double kSettleNs = 8e9, kWatchedFrames = 20;  // before measuring; of the device alone, after that
 
 void append_line(std::string* text, const char* pattern, double a, double b, double c) {
   char line[160];
@@ -36,12 +36,11 @@ void write_data(std::string* f, const char* name, const std::vector<FrontPoint>&
 }
 
 void write_front_plot(std::string* f, const char* name, const char* title, const char* unit, const char* key) {
-  *f +=
-      std::string("set title '") + title + "'\nset xlabel 'milliseconds per frame, logarithmic'\nset ylabel '" + unit +
-      "'\nset logscale x\nset autoscale\nset yrange [0:*]\nset key " + key + " nobox\nplot $" + name +
-      " using 1:2 title 'shares measured' with points pt 7 ps 0.7 lc rgb '#aaaaaa', \\\n  $" + name +
-      "_front using 1:2 title 'not beaten in both; m beside it' with linespoints pt 7 lw 2 lc rgb '#d62728', \\\n  $" +
-      name + "_front using 1:2:(sprintf(' %.2f', $3)) notitle with labels left offset 0.3,0.6 font ',8'\n";
+  *f += std::string("set title '") + title + "'\nset xlabel 'milliseconds per frame, logarithmic'\nset ylabel '" +
+        unit + "'\nset logscale x\nset autoscale\nset yrange [0:*]\nset key " + key + " nobox\nplot $" + name +
+        " using 1:2 title 'shares measured' with points pt 7 ps 0.7 lc rgb '#aaaaaa', \\\n  $" + name +
+        "_front using 1:2 title 'Pareto front, labelled with m' with linespoints pt 7 lw 2 lc rgb '#d62728', \\\n  $" +
+        name + "_front using 1:2:(sprintf(' %.2f', $3)) notitle with labels left offset 0.3,0.6 font ',8'\n";
 }
 
 void write_clients_plot(std::string* f, const std::vector<ClientsRow>& clients) {
@@ -136,8 +135,8 @@ Status draw_fronts(const std::string& folder, const std::string& title, const Fr
   write_data(&text, "energy", fronts.energy), write_data(&text, "bytes", fronts.bytes);
   text +=
       "set multiplot layout 1,3 title " + gnuplot_lines(title, 180) + " font 'sans,13'\nset grid lc rgb '#dddddd'\n";
-  write_front_plot(&text, "energy", "Time against energy", "millijoules per frame, beyond the device idle", "top left");
-  write_front_plot(&text, "bytes", "Time against price", "kilobytes per frame, each of which has its price",
+  write_front_plot(&text, "energy", "Time against energy", "millijoules per frame, above idle", "top left");
+  write_front_plot(&text, "bytes", "Time against price", "kilobytes per frame, which a link may charge for",
                    "bottom left");
   write_clients_plot(&text, clients);
   text += "unset multiplot\n";

@@ -23,7 +23,7 @@ struct OneThread {
   ~OneThread() { renderer->workers = workers, renderer->pace = pace; }
 };
 
-// Adds the light of a map to a frame that has nothing but this machine's own.
+// Adds a map's light to a frame that has only this machine's own.
 Status measure_adding(Renderer* renderer, std::uint32_t pitch, double* ns) {
   const Settings& settings = renderer->settings;
   std::vector<Hit> hits(first_hit_count(settings));

@@ -11,7 +11,7 @@
 namespace pocketray {
 namespace {
 
-constexpr double kLogFrom = 8;  // ratio to the best time from which the axis is logarithmic
+constexpr double kLogFrom = 8;  // the axis is logarithmic from this ratio to the best time on
 
 __attribute__((format(printf, 2, 3))) void append(std::string* text, const char* pattern, ...) {
   va_list arguments, again;
@@ -81,8 +81,8 @@ void write_paper_plot(std::string* f) {
          "set key top right nobox\nset style data histograms\nset style histogram clustered gap 1\n"
          "set style fill solid 0.9 noborder\nset boxwidth 0.9\nset xtics scale 0 font ',9'\n"
          "plot $paper using 2:xtic(1) title 'the paper: render, then send' lc rgb '#bbbbbb', \\\n"
-         "  '' using 3 title 'pocketray: both at once' lc rgb '#d62728', \\\n"
-         "  '' using 0:4 title 'full overlap allows' with points pt 9 ps 1.6 lc rgb 'black'\n");
+         "  '' using 3 title 'pocketray: both overlapped' lc rgb '#d62728', \\\n"
+         "  '' using 0:4 title 'bound for full overlap' with points pt 9 ps 1.6 lc rgb 'black'\n");
 }
 
 }  // namespace

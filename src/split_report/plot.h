@@ -12,7 +12,7 @@ struct SplitPlot {
 };
 
 Status write_split_csv(const std::string& folder, const SplitFigures& figures, std::uint32_t pixel_count);
-// Also writes split.gnuplot, which draws it again. *drawn: whether gnuplot succeeded.
+// Also writes split.gnuplot, which redraws the plot. *drawn: whether gnuplot succeeded.
 Status draw_split(const std::string& folder, const SplitPlot& plot, const SplitFigures& figures, bool* drawn);
 
 }  // namespace pocketray

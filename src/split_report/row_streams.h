@@ -1,5 +1,5 @@
-// What whole pictures would take on a connection of their own, however they are coded: for comparison with the rows
-// that are sent.
+// Size of whole pictures on a connection of their own, coded in every way:
+// for comparison with the rows that are sent.
 #pragma once
 #include "accuracy/network/row_stream.h"
 
@@ -8,17 +8,17 @@ namespace pocketray {
 struct CountedStream {
   RowStream stream;
   double bytes = 0;    // of all pictures
-  double squares = 0;  // squared error of a channel, in levels of the format, summed over the pictures' means
+  double squares = 0;  // squared error per channel, in levels of the format, summed over the pictures' means
 };
 
 struct RowStreams {
-  CountedStream first;           // each picture as the first of a connection
-  CountedStream lossless, near;  // one picture after the other
+  CountedStream first;           // each picture as a connection's first
+  CountedStream lossless, near;  // successive pictures
   std::uint32_t picture_count = 0;
 };
 
 void open_row_streams(const CodecShape& shape, RowStreams* streams);
-// Sends a picture of unpadded rows. The first one counts for `first` alone, as it is no change from another.
+// Sends a picture of unpadded rows. The first one counts only for `first`, as it changes no other.
 void send_picture(RowStreams* streams, const std::uint8_t* pixels, RowCoding coding);
 
 }  // namespace pocketray

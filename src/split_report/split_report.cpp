@@ -81,7 +81,7 @@ Status open_experiment(const SplitSetup& setup, SplitKind kind, Progress* progre
   return success();
 }
 
-// The next frame along the path.
+// Renders the next frame along the path.
 Status next_frame(Experiment* e, bool* complete) {
   std::uint32_t step = e->frame++ % (kSkippedFrames + e->setup.frame_count);
   Renderer* renderer = e->setup.device;
@@ -107,7 +107,7 @@ Status settle(Experiment* e, bool* complete) {
 }
 
 // Runs the path from its start `lap_count` times, skipping the first frames of each lap, which follow a jump and
-// perhaps a change of share. A lap before them does not count either: a stream that has already seen a small picture's
+// perhaps a change of share. An earlier lap does not count either: a stream that has already seen a small picture's
 // path compresses it better.
 Status measure_point(Experiment* e, std::uint32_t lap_count, SplitPoint* point, bool* complete, RowStreams* whole) {
   const Settings& settings = e->client.settings;
@@ -145,7 +145,7 @@ Status measure_point(Experiment* e, std::uint32_t lap_count, SplitPoint* point, 
   return success();
 }
 
-// Measures a point of the sweep unless it is already there.
+// Measures a point of the sweep unless it already exists.
 Status measure_share(Experiment* e, double m, std::vector<SplitPoint>* sweep, bool* complete) {
   CHECK(m >= 0 && m <= 1);
   double height = e->client.settings.height, row = std::floor(m * height + 0.5);
@@ -167,7 +167,7 @@ std::size_t least_of(const std::vector<SplitPoint>& sweep) {
   return static_cast<std::size_t>(std::min_element(sweep.begin(), sweep.end(), faster) - sweep.begin());
 }
 
-// Frames shared in another way, in a world of their own.
+// Measures frames shared in another way, in a world of their own.
 Status measure_kind(const SplitSetup& setup, SplitKind kind, std::uint64_t* frames_done, Progress* progress,
                     SplitPoint* point, bool* complete) {
   const Settings kept = setup.device->settings;
@@ -194,7 +194,7 @@ Status measure_paper_row(const SplitSetup& given, double* bytes_per_pixel, std::
   setup.device_prepare_ns = setup.server_prepare_ns = 0;  // and nothing moves there
   setup.line.latency_ns = setup.line.jitter_ns = 0;
   SplitPoint point;
-  // A first run finds the compressed size of the rows.
+  // The first run finds the compressed size of the rows.
   for (int run = 0; run < kPaperRuns && *complete; ++run) {
     setup.line.bytes_per_second = static_cast<std::uint64_t>(*bytes_per_pixel * 1e9 / kPaperTransferNs);
     Experiment e;
@@ -248,7 +248,7 @@ Status measure_split(const SplitSetup& setup, std::uint32_t step_count, Progress
   if (complete) figures->local = sweep->back();
   for (std::uint32_t i = 0; complete && i < step_count; ++i)
     RETURN_IF_ERROR(measure_share(&e, double(i) / (step_count - 1), sweep, &complete));
-  // 2. Halve the distance to the neighbours of the minimum, repeatedly.
+  // 2. Repeatedly halve the distance to the neighbours of the minimum.
   for (int i = 0; complete && i < kRefinements; ++i) {
     std::size_t least = least_of(*sweep);
     double m = (*sweep)[least].m, before = least > 0 ? (*sweep)[least - 1].m : m,
@@ -276,7 +276,7 @@ Status measure_paper(const SplitSetup& setup, Progress* progress, SplitFigures* 
       {"Cornell box", 2, 989, 8841, 0.1358, 1200}, {"Cornell box", 4, 585, 8841, 0.1002, 886},
       {"Cornell box", 8, 325, 8841, 0.0758, 669},  {"Buddha", 2, 520, 6688, 0.1209, 809},
       {"Buddha", 4, 390, 6688, 0.1056, 706},       {"Buddha", 8, 208, 6688, 0.0833, 557}};
-  const WholeFrames whole(setup.device);  // the paper's times are of all rows
+  const WholeFrames whole(setup.device);  // the paper's times are for all rows
   double bytes_per_pixel = 0.8;
   std::uint64_t frames_done = 0;
   bool complete = true;

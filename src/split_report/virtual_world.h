@@ -30,10 +30,10 @@ struct VirtualWorld {
   ~VirtualWorld();
 };
 
-// Makes `server_count` servers, not yet started. The store remains the caller's and must outlive the world.
+// Makes `server_count` servers without starting them. The caller keeps the store, which must outlive the world.
 Status open_world(const platform::NullLinkSettings& line, const SceneStore& store, std::uint32_t server_count,
                   VirtualWorld* world);
-// A restarted server listens at the same address.
+// A restarted server listens at its previous address.
 Status start_server(VirtualWorld* world, std::uint32_t index, const ServerOptions& options);
 void stop_server(VirtualWorld* world, std::uint32_t index);
 

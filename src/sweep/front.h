@@ -1,4 +1,4 @@
-// The front that a sweep found, for --budget-ms.
+// The front found by a sweep, for --budget-ms.
 #pragma once
 #include <string>
 #include <vector>
@@ -13,8 +13,8 @@ struct SweptFront {
   std::string path;  // in the cache; empty: the scene could not be identified
 };
 
-// The Pareto front of the points that can be chosen between frames on a screen of the baseline's format. Points closer
-// in error than the reference's own error count as equal. `sweep`: summed up from the plan's points.
+// Returns the Pareto front of the points that can be chosen between frames on a screen of the baseline's format. Errors
+// closer than the reference's own error count as equal. `sweep`: summed up from the plan's points.
 Front front_of_sweep(const SweepPlan& plan, const Sweep& sweep);
 
 }  // namespace pocketray

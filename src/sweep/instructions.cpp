@@ -14,13 +14,13 @@
 
 namespace pocketray {
 
-// Callgrind dumps its counts before it enters this function.
+// Callgrind dumps its counts before entering this function.
 __attribute__((noinline)) void begin_counted_frame() { asm volatile("" ::: "memory"); }
 
 namespace {
 
 constexpr const char *kJobName = "job", *kAnswerName = "answer", *kDumpName = "callgrind";
-constexpr const char* kNotCounted = "instructions are not counted: this CPU or system does not count them for programs";
+constexpr const char* kNotCounted = "instructions are not counted: this CPU or system has no counter for programs";
 constexpr std::size_t kWordsBytesMax = 1 << 17;
 
 struct TemporaryFolder {
@@ -128,7 +128,7 @@ void watch(Counting* counting) {
   counting->ended_well = state == platform::ProcessState::succeeded;
 }
 
-// The other program's report on its frames; null: nothing yet.
+// Returns the other program's report on its frames; null: nothing yet.
 Json read_answer(const Counting& counting) {
   std::string text;
   if (!read_text(std::string(counting.folder.path) + "/" + kAnswerName, &text)) return nullptr;
@@ -136,7 +136,7 @@ Json read_answer(const Counting& counting) {
   return answer.is_discarded() ? nullptr : answer;
 }
 
-// Stores the dumped counts in the state. Returns the number of points counted.
+// Stores the dumped counts in the state. Returns the number of counted points.
 std::size_t take_counts(const Counting& counting, AccuracyState* state) {
   std::size_t count = 0;
   Json answer = read_answer(counting);
@@ -216,7 +216,7 @@ Status render_for_valgrind(const AccuracyOptions& options) {
   float exposure = 1;
   std::vector<std::string> ids;
   RETURN_IF_ERROR(read_job(o.counting_folder, &o, &exposure, &ids));
-  // The job holds what matters of the device; neither its memory nor its speed is measured here.
+  // The job has everything relevant of the device; neither its memory nor its speed is measured here.
   o.common.emulate = o.common.device = o.common.memory = "";
   o.common.threads = 1;  // several threads would divide the tiles of the last rows
   Isa isa;
@@ -228,7 +228,7 @@ Status render_for_valgrind(const AccuracyOptions& options) {
   std::map<std::string, const SweepPoint*> points;
   for (const SweepPoint& point : plan.points) points[id_of(point)] = &point;
   Rig* rig;
-  for (const std::string& id : ids) {  // opens all first, as that traces too
+  for (const std::string& id : ids) {  // opens all first, since that traces, too
     if (!points.count(id)) return failure("this sweep has no configuration %.100s", id.c_str());
     RETURN_IF_ERROR(rig_for(&rigs, points[id]->configuration, &rig));
   }

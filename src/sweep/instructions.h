@@ -5,7 +5,7 @@
 
 namespace pocketray {
 
-// Counts instructions for all points without a count and stores them in the state, which it does not save. After an
+// Counts instructions for all points that lack a count and stores them in the state, without saving it. After an
 // interrupt *whole is false and finished counts are kept. *note says how instructions are counted, or why not; this
 // never fails the sweep. Starts nothing unless options.starts_valgrind.
 void count_by_valgrind(const AccuracyOptions& options, const Rig& rig, const SweepPlan& plan, AccuracyState* state,

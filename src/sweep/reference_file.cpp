@@ -45,7 +45,7 @@ std::string reference_key(const Rig& rig, const AccuracyOptions& options, Transp
               {"time", options.seconds},
               {"effects", options.common.effects},
               {"sampler", kReferenceSampler}};
-  const CommonOptions& common = options.common;  // the camera has --fov, the scene's hash --environment
+  const CommonOptions& common = options.common;  // --fov is part of the camera, --environment of the scene's hash
   if (common.environment == kNoEnvironment) key["environment"] = common.environment;
   if (!common.background.empty()) key["background"] = common.background;
   if (common.light != CommonOptions().light) key["light"] = common.light;
@@ -63,7 +63,7 @@ Status load_accumulation(const std::string& path, Accumulation* accumulation, Tr
   Json key = Json::parse(accumulation->key, nullptr, false);
   bool named = key.is_object() && key.contains("kind") && key["kind"].is_string();
   if (!named || (key["kind"] != "model" && key["kind"] != "physical"))
-    return failure("%.300s is a reference of unknown kind: remove it, or take another copy", path.c_str());
+    return failure("%.300s is a reference of unknown kind: remove it, or use another copy", path.c_str());
   *transport = key["kind"] == "model" ? Transport::model : Transport::physical;
   return success();
 }
@@ -83,7 +83,7 @@ Status check_same_reference(const std::string& path, const Accumulation& there, 
         return failure("%.200s is a reference with %s %.90s, not the scene's own: name another file", path.c_str(),
                        item.key().c_str(), item.value().dump(-1, ' ', false, Json::error_handler_t::replace).c_str());
   if (there.key == wanted.key && there.width == wanted.width && there.height == wanted.height) return success();
-  return failure("%.300s is damaged: remove it, or take another copy", path.c_str());
+  return failure("%.300s is damaged: remove it, or use another copy", path.c_str());
 }
 
 Status save_accumulation(const std::string& path, const Accumulation& accumulation) {

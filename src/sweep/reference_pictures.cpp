@@ -1,4 +1,4 @@
-// What a reference shows, and how far it may be off.
+// Pictures of a reference, and its own error.
 #include <cmath>
 
 #include "accuracy/display.h"
@@ -9,7 +9,7 @@
 namespace pocketray {
 namespace {
 
-// ꟻLIP of half a difference to that of the whole: its exponent for colours [Andersson20, sec. 4.1, q_c].
+// Exponent for colours [Andersson20, sec. 4.1, q_c]: scales ꟻLIP from half a difference to the whole.
 constexpr double kFlipExponent = 0.7;
 constexpr std::uint32_t kRegionColumns = 8, kRegionRows = 6;
 

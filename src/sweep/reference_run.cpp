@@ -50,7 +50,7 @@ Status take_batch(const SampleRange& samples, Run* run) {
   }
 }
 
-// Takes the samples that the goal lacks with this program alone.
+// Takes the samples that the goal lacks with this process alone.
 Status take_alone(Run* run) {
   const ReferenceGoal& goal = run->goal;
   const std::uint32_t end = half_samples(goal), batch_count = (end + kReferenceBatch - 1) / kReferenceBatch;

@@ -1,4 +1,4 @@
-// Takes the samples of a reference until it is good enough, and keeps them in a file.
+// Takes a reference's samples until it is good enough, and keeps them in a file.
 #pragma once
 #include "sweep/reference_file.h"
 
@@ -12,10 +12,10 @@ struct ReferencePictures {
   std::uint64_t samples = 0;             // per pixel, both halves together
 };
 
-// The pictures of an accumulation, at the rig's exposure.
+// Makes the pictures of an accumulation, at the rig's exposure.
 void develop(const Accumulation& accumulation, double exposure, double pixels_per_degree, ReferencePictures* pictures);
 
-// Own errors of a grid of regions, as even as whole pixels allow, row by row from the top.
+// Own error of one region in a grid that is as even as whole pixels allow, row by row from the top.
 struct RegionError {
   std::uint32_t column, row, column_end, row_end;  // pixels
   double rmse, flip;
@@ -26,18 +26,18 @@ std::vector<RegionError> region_errors(const ReferencePictures& pictures, std::u
 struct ReferenceGoal {
   Transport transport = Transport::physical;
   std::uint32_t samples = 0;               // per pixel, both halves and all parts together; 0: no limit
-  double until = 0;                        // its own ꟻLIP error at which to stop; 0: only at `samples`
-  std::uint32_t part = 1, part_count = 1;  // takes the samples of this part
+  double until = 0;                        // ꟻLIP error at which to stop; 0: only at `samples`
+  std::uint32_t part = 1, part_count = 1;  // takes this part's samples
   double pixels_per_degree = kHandheldPixelsPerDegree;
   std::string path;                             // of its file
-  Team team;                                    // whose ranks take the samples
+  Team team;                                    // ranks that take the samples
   double save_seconds = 60;                     // between saves
-  std::function<void(std::uint32_t)> row_done;  // called after samples of a row, one at a time; may be null
+  std::function<void(std::uint32_t)> row_done;  // called after each row's samples, one at a time; may be null
 };
 
-// Adds the samples that the goal lacks, with the rig's prepared frame and all its threads, and saves them now and then
-// and at the end. The other ranks of a team run a ReferenceHelper; this one leads it. After an interrupt *whole is
-// false; the same call continues.
+// Adds the samples that the goal lacks, using the rig's prepared frame and all its threads, and saves them now and then
+// and at the end. The other ranks of a team run a ReferenceHelper; this one leads. After an interrupt *whole is false;
+// calling again continues.
 Status run_reference(const ReferenceGoal& goal, Rig* rig, Accumulation* accumulation, bool* whole);
 
 }  // namespace pocketray

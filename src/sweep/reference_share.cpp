@@ -8,12 +8,12 @@ namespace pocketray {
 namespace {
 
 constexpr double kMeasureGrowth = 1.1;
-// Chosen: a row of 320 pixels takes a tenth of a second then, and its sums of 31 kB a ten-thousandth to be sent.
+// Chosen: a row of 320 pixels then takes a tenth of a second, and sending its 31 kB of sums a ten-thousandth of that.
 constexpr std::uint32_t kBatchesAtOnce = 4;
-// Chosen: while one program measures, the others are busy. What is held back takes a few megabytes for each round of a
-// small picture; if nothing is, rounds only list pieces.
+// Chosen: while one process measures, the others are busy. Held-back samples take a few megabytes per round of a small
+// picture; without any, rounds only list pieces.
 constexpr std::size_t kRoundsAhead = 4, kUngatedRoundsAhead = 64;
-// Portions of all threads that make plenty.
+// Portions of all threads that count as plenty.
 constexpr std::size_t kPlenty = 4, kPiecesMax = 2;
 
 }  // namespace
@@ -91,7 +91,7 @@ Status ReferenceShare::add(RowSamples taken) {
   auto round = std::find_if(rounds_.begin(), rounds_.end(), [&](const Round& r) {
     return taken.samples.begin >= r.begin && taken.samples.begin < r.end;
   });
-  if (round == rounds_.end() || round->missing == 0) return failure("samples that nobody asked for");
+  if (round == rounds_.end() || round->missing == 0) return failure("samples that nobody requested");
   if (is_gated_ && round != rounds_.begin())
     round->held.push_back(std::move(taken));
   else

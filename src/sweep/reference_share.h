@@ -1,5 +1,5 @@
-// Which samples of a reference are taken next, and when its error is due to be measured. Neither talks nor looks at a
-// clock: whatever order pieces come back in, the samples that count are those of one program alone.
+// Decides which samples of a reference are taken next, and when its error is due to be measured. Neither communicates
+// nor reads a clock: whatever order pieces return in, the samples that count equal those of a single process.
 #pragma once
 #include <deque>
 
@@ -7,13 +7,13 @@
 
 namespace pocketray {
 
-// Samples of each half between which a row's may be saved; small, since an interrupt waits for them.
+// Samples of each half between possible saves of a row; small, since an interrupt waits for them.
 constexpr std::uint32_t kReferenceBatch = 4;
 
-// When the error of a reference is measured: whenever the number of batches has grown by a tenth.
+// Schedule for measuring a reference's error: whenever the number of batches has grown by a tenth.
 struct MeasureSchedule {
   std::uint32_t at = 2;
-  // To be asked after each batch, in ascending order.
+  // Call after each batch, in ascending order.
   bool is_due_after(std::uint32_t batch);
 };
 
@@ -24,29 +24,29 @@ struct ReferencePiece {
 
 class ReferenceShare {
  public:
-  // Of at most `samples` per pixel and half; takes batches part − 1, part − 1 + part_count, … If `is_gated`, samples
-  // beyond those to be measured next are held back. The accumulation must outlive it.
+  // Takes at most `samples` per pixel and half, in batches part − 1, part − 1 + part_count, … If `is_gated`, samples
+  // beyond the next measurement are held back. The accumulation must outlive it.
   ReferenceShare(std::uint32_t samples, std::uint32_t part, std::uint32_t part_count, bool is_gated,
                  Accumulation* accumulation);
 
-  // The next pieces to be taken, of different rows; at most so many, and none if those that may be begun are.
+  // Returns the next pieces to take, of different rows, at most `count`; none if all that may begin have begun.
   std::vector<ReferencePiece> take(std::uint32_t count);
-  // The same for a helper of so many threads among all the team's: two pieces for each, as long as there are plenty, so
-  // that threads wait little for each other; at last one, so that ranks do.
+  // Returns pieces for a helper with `threads` of the team's threads: two per thread while there are plenty, so that
+  // threads rarely wait for each other; finally one, so that ranks rarely do.
   std::vector<ReferencePiece> take_portion(std::uint32_t threads, std::uint32_t all_threads);
-  // Samples of a piece that was given out.
+  // Adds the samples of a piece that was given out.
   Status add(RowSamples taken);
 
-  // A round is what lies between two measurements. True if all samples of the first are there.
+  // A round is the interval between two measurements. Returns whether the first round's samples are complete.
   bool is_first_round_done() const;
-  // The error should be measured: the samples are those of the batches before `batches`.
+  // True if the error should be measured: the samples are those of the batches before `batches`.
   bool is_measured() const { return rounds_.front().is_measured; }
   std::uint32_t batches() const { return rounds_.front().batches; }
-  // Goes on with the next round.
+  // Continues with the next round.
   Status end_round();
   bool is_done() const { return rounds_.empty(); }
 
-  // Adds what is held back, too: for when samples matter more than their number.
+  // Also adds what is held back, when samples matter more than their number.
   Status add_held();
 
  private:
@@ -54,7 +54,7 @@ class ReferenceShare {
     std::uint32_t begin, end, batches;  // samples; batches before its end
     bool is_measured = false;
     std::vector<ReferencePiece> pieces = {};
-    std::size_t next = 0, missing = 0;  // pieces to be given out next, and not back yet
+    std::size_t next = 0, missing = 0;  // next piece to give out, pieces not back yet
     std::vector<RowSamples> held = {};
   };
   void look_ahead();

@@ -17,15 +17,15 @@ enum : std::uint8_t {
   kRows                    // from helpers: run, then rows' samples
 };
 
-// Of pieces that a helper has at a time: while it works on one, the next is already there.
+// Pieces that a helper holds at a time: while it works on one, the next has already arrived.
 constexpr std::uint32_t kPortionsAhead = 2;
 constexpr double kWaitSeconds = 0.05;
-// Chosen: mpirun kills ranks a second after it has told them to end, and saving takes some of it.
+// Chosen: mpirun kills ranks a second after telling them to end, and saving takes part of it.
 constexpr double kInterruptSeconds = 0.4;
-// Between measurements that nothing depends on: they only tell how far it is.
+// Interval of measurements that only report progress.
 constexpr double kTellSeconds = 10;
 
-// Takes pieces of different rows with the rig's threads; after an interrupt, those that were begun.
+// Takes pieces of different rows with the rig's threads; after an interrupt, only those that were begun.
 std::vector<RowSamples> take_rows(const Rig& rig, Transport transport, const std::vector<ReferencePiece>& pieces) {
   struct Job {
     const Rig& rig;
@@ -49,7 +49,7 @@ std::uint32_t thread_count(const Rig& rig) { return std::max(1u, worker_thread_c
 
 struct Helper {
   bool is_ready = false;
-  std::uint32_t threads = 0, portions = 0;  // portions it has
+  std::uint32_t threads = 0, portions = 0;  // outstanding portions
 };
 
 struct Lead {
@@ -58,8 +58,8 @@ struct Lead {
   ReferenceShare share;
   ReferenceGauge* gauge;
   std::vector<Helper> helpers;  // by rank; the leader's own is idle
-  std::uint64_t run;            // number of this reference, so that late messages of others are told apart
-  bool drops = false;           // what still comes is no longer wanted
+  std::uint64_t run;            // number of this reference, to tell apart late messages of others
+  bool drops = false;           // further samples are no longer wanted
 };
 
 Status add_rows(std::vector<RowSamples> rows, Lead* lead) {
@@ -85,7 +85,7 @@ Status read_rows(TeamReader* reader, std::vector<RowSamples>* rows) {
     reader->take(row.sums.data(), row.sums.size() * sizeof row.sums[0]);
     rows->push_back(std::move(row));
   }
-  return reader->ok() ? success() : failure("a message of samples is cut");
+  return reader->ok() ? success() : failure("a message of samples is truncated");
 }
 
 // Gives out pieces until each ready helper has as many as it may.
@@ -107,7 +107,7 @@ void give_pieces(Lead* lead) {
     }
 }
 
-// Takes in a message of a helper, waiting for it at most so long.
+// Handles a message of a helper, waiting at most `seconds` for it.
 Status serve_one(double seconds, Lead* lead, bool* there) {
   TeamMessage message;
   RETURN_IF_ERROR(receive_from_helpers(lead->goal.team, seconds, &message, there));
@@ -134,7 +134,7 @@ Status serve(double seconds, Lead* lead) {
   return success();
 }
 
-// Ends rounds whose samples are all there. *enough: the error is small enough.
+// Ends rounds whose samples are complete. *enough: the error is small enough.
 Status end_rounds(std::uint64_t* told_ns, Lead* lead, bool* enough) {
   while (lead->share.is_first_round_done() && !interrupted) {
     const bool tells = static_cast<double>(clock_ns() - *told_ns) > kTellSeconds * 1e9;
@@ -148,7 +148,7 @@ Status end_rounds(std::uint64_t* told_ns, Lead* lead, bool* enough) {
   return success();
 }
 
-// Until every helper is ready and has nothing to do, or after an interrupt a while has passed.
+// Waits until every helper is ready and idle or, after an interrupt, for a limited time.
 Status wait_for_helpers(Lead* lead) {
   auto is_busy = [](const Helper& h) { return !h.is_ready || h.portions > 0; };
   const std::uint64_t start = clock_ns();
@@ -207,7 +207,7 @@ Status ReferenceHelper::begin(const TeamMessage& message) {
   if (!rig_) RETURN_IF_ERROR(find_rig_(&rig_));
   CHECK(rig_ != nullptr);
   if (reference_key(*rig_, options_, transport_) != key)
-    return failure("its scene or program is not that of rank 0: give all machines the same files");
+    return failure("its scene or program differs from rank 0's: give all machines the same files");
   make_rig_reference(rig_);
   TeamWriter text;
   text.number(run_), text.number(thread_count(*rig_));

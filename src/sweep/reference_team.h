@@ -1,15 +1,15 @@
 // A reference whose samples all ranks of a team take. The leader gives out pieces, rows of some samples each, and adds
-// what comes back; so it always has all that is finished, and may save or stop at any time.
+// the results; so it always holds everything finished, and may save or stop at any time.
 #pragma once
 #include "sweep/reference_gauge.h"
 
 namespace pocketray {
 
-// For the leader: takes the samples that the goal lacks, with its own threads and the helpers, until enough or
-// interrupted. Afterwards all helpers are idle. Fails if one of them has.
+// For the leader: takes the samples that the goal lacks, with its own threads and the helpers, until done or
+// interrupted. Afterwards all helpers are idle. Fails if one of them did.
 Status take_with_team(const ReferenceGoal& goal, Rig* rig, Accumulation* accumulation, ReferenceGauge* gauge);
 
-// For the others. `rig` and `options` must outlive it.
+// For the other ranks. `rig` and `options` must outlive it.
 class ReferenceHelper {
  public:
   // Finds the rig, prepared for references, when the leader begins the first one.
@@ -17,7 +17,7 @@ class ReferenceHelper {
   ReferenceHelper(const Team& team, const AccuracyOptions& options, FindRig find_rig)
       : team_(team), options_(options), find_rig_(std::move(find_rig)) {}
 
-  // Does what a message of the leader asks for. Fails if this rank's samples are not those of the leader's scene.
+  // Does what the leader's message requests. Fails if this rank's samples are not from the leader's scene.
   Status work(const TeamMessage& message);
 
  private:

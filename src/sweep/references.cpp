@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::uint32_t kModelSamples = 2048, kPhysicalSamples = 256;
 
-// Where samples are kept for all sweeps of the same scene and camera; empty: nowhere.
+// Path where samples are kept for all sweeps with this scene and camera; empty: nowhere.
 std::string cached_path(const std::string& scene, const std::string& key) {
   std::string folder = cache_folder(scene);
   if (folder.empty()) return "";
@@ -23,11 +23,11 @@ std::string cached_path(const std::string& scene, const std::string& key) {
   std::string path = folder + name;
   Status status = make_cache(path, "the cache");
   if (status.ok) return path;
-  std::fprintf(stderr, "pocketray: %s; the reference is kept with the sweep alone\n", status.message);
+  std::fprintf(stderr, "pocketray: %s; the reference is only kept with the sweep\n", status.message);
   return "";
 }
 
-// Adopts the samples of a file if it is there and fits; otherwise they are taken again.
+// Adopts the samples of a file if it exists and fits; otherwise they are taken again.
 void continue_from(const std::string& path, Accumulation* accumulation) {
   if (platform::file_stamp(path.c_str()) == 0) return;
   Accumulation there;
@@ -37,10 +37,10 @@ void continue_from(const std::string& path, Accumulation* accumulation) {
   if (status.ok)
     *accumulation = there;
   else
-    std::fprintf(stderr, "pocketray: %s; its samples are taken again\n", status.message);
+    std::fprintf(stderr, "pocketray: %s; taking its samples again\n", status.message);
 }
 
-// A file that must fit.
+// Adopts a file that must fit.
 Status adopt(const std::string& path, Accumulation* accumulation) {
   Accumulation there;
   Transport kind;

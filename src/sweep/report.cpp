@@ -41,7 +41,7 @@ void print_value(const Sweep& sweep, const Measured& m, bool in_bytes) {
   std::printf("%s%s\n", m.is_default ? "  baseline" : "", m.pareto ? "  *" : "");
 }
 
-// The least, the baseline's and the best value.
+// Prints the least accurate, the baseline's and the best value.
 void print_knob(const Sweep& sweep, const KnobFigures& k) {
   std::printf("  %s: %s\n", k.name.c_str(), k.what.c_str());
   KnobEnds ends = ends_of(sweep, k.name);
@@ -59,7 +59,7 @@ void print_knob(const Sweep& sweep, const KnobFigures& k) {
 }
 
 void print_front(const Sweep& sweep) {
-  std::printf("Pareto front: nothing measured is both faster and at most as far off in ꟻLIP\n");
+  std::printf("Pareto front: no other configuration is faster at equal or lower ꟻLIP\n");
   for (const Measured* m : front_of(sweep))
     std::printf("  %9.2f ms  ꟻLIP %.4f  %s %s\n", ms_of(sweep, m->ns_per_pixel.value), m->flip, m->knob.c_str(),
                 m->value.c_str());

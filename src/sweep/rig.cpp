@@ -19,7 +19,7 @@
 namespace pocketray {
 namespace {
 
-// Address space to start with if no --memory is given; a sweep touches only what it needs of it.
+// Initial address space if no --memory is given; a sweep touches only what it needs of it.
 constexpr std::size_t kMemoryFirst = std::size_t(1) << 30;
 
 std::string hash_of(const SceneSource& source, const Scene& scene) {
@@ -36,7 +36,7 @@ std::string hash_of(const SceneSource& source, const Scene& scene) {
   return text;
 }
 
-// The settings with the largest memory need of all that a sweep tries.
+// Returns the settings with the largest memory need among all that a sweep tries.
 Settings dearest(const Scene& scene, Settings settings) {
   settings.indirect = indirect_choice(Effect::instant_radiosity);
   settings.resolution = Resolution::half;
@@ -173,7 +173,7 @@ Status count_instructions(Rig* rig, const Configuration& configuration, double s
   RETURN_IF_ERROR(change_settings(renderer, configuration.settings));
   RETURN_IF_ERROR(prepare_frame(renderer, seconds));
   start = platform::instruction_count();
-  RETURN_IF_ERROR(prepare_frame(renderer, seconds));  // prepares a second time, so that it is not counted
+  RETURN_IF_ERROR(prepare_frame(renderer, seconds));  // prepares again, so that this is not counted
   std::uint64_t prepared = platform::instruction_count();
   double ns_per_pixel;
   RETURN_IF_ERROR(time_frame(rig, configuration, seconds, &ns_per_pixel));

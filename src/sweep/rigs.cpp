@@ -7,7 +7,7 @@
 namespace pocketray {
 namespace {
 
-// The ladder, which --budget-ms uses without a measured front, is measured too.
+// The ladder, which --budget-ms uses without a measured front, is also measured.
 std::vector<Settings> ladder_of(const Renderer& renderer) {
   Front front = builtin_front();
   drop_what_scene_ignores(&front, renderer.effects.mask);

@@ -6,13 +6,13 @@
 
 namespace pocketray {
 
-// Of Cornell's sphere in references, finer than any in the sweep.
+// Columns of cornell's sphere in references, finer than any in the sweep.
 constexpr std::uint32_t kReferenceColumns = 256;
 
 struct Rigs {
   const AccuracyOptions& options;
   std::map<std::uint32_t, std::unique_ptr<Rig>>
-      by_columns;  // by columns of the sphere; kCornellSphereColumns is the first rig
+      by_columns;  // key: columns of the sphere; kCornellSphereColumns is the first rig
 };
 
 // Opens the first rig and plans the sweep of its scene.
@@ -21,10 +21,10 @@ Status plan_rigs(Rigs* rigs, SweepPlan* plan);
 // Finds or opens the rig of a configuration, with the first rig's exposure. Owned by `rigs`.
 Status rig_for(Rigs* rigs, const Configuration& configuration, Rig** rig);
 
-// The same for the rig whose pictures are references.
+// Likewise for the rig whose pictures are references.
 Status reference_rig(Rigs* rigs, Rig** rig);
 
-// A unique name for a point of the plan.
+// Returns a unique name for a point of the plan.
 std::string id_of(const SweepPoint& point);
 
 // True if a point is measured itself: it is available and not the baseline under another name.

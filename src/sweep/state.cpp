@@ -11,7 +11,7 @@ namespace {
 
 constexpr const char* kStateName = "accuracy.state";
 
-// JSON has neither NaN nor infinity, the PSNR of equal pictures.
+// JSON has neither NaN nor infinity, which is the PSNR of equal pictures.
 Json number(double value) { return std::isfinite(value) ? Json(value) : Json(value > 0 ? "inf" : "none"); }
 double number_of(const Json& json) {
   if (json == "inf") return std::numeric_limits<double>::infinity();
@@ -41,7 +41,7 @@ PointFigures figures_from(const Json& json) {
   f.flip = number_of(e.at(0)), f.flip_before = number_of(e.at(1));
   f.errors = {number_of(e.at(2)), number_of(e.at(3)), number_of(e.at(4)),
               number_of(e.at(5)), number_of(e.at(6)), number_of(e.at(7))};
-  if (e.size() > 8) f.flip_other = number_of(e.at(8));  // older files lack it
+  if (e.size() > 8) f.flip_other = number_of(e.at(8));  // missing in older files
   return f;
 }
 

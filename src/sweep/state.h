@@ -1,4 +1,4 @@
-// The measurements of a sweep so far, kept in its folder so that the same command can continue.
+// Measurements of a sweep so far, kept in its folder so that the same command can continue.
 #pragma once
 #include <map>
 #include <nlohmann/json.hpp>
@@ -13,13 +13,13 @@ namespace pocketray {
 struct AccuracyState {
   Json key;                                    // name → text: everything the figures depend on
   std::uint32_t rounds = 0;                    // finished
-  std::string counted;                         // how instructions are counted if not by the CPU; empty: by the CPU
-  std::map<std::string, PointFigures> points;  // by knob and value; only times of finished rounds
+  std::string counted;                         // how instructions are counted, if not by the CPU; empty: by the CPU
+  std::map<std::string, PointFigures> points;  // by knob and value; times of finished rounds only
   std::vector<std::string> references;         // names of finished pictures
 };
 
-// Creates the folder and reads its state, or starts one with the key. Unless `restart`, fails on an unreadable state or
-// one with another key.
+// Creates the folder and reads its state, or starts a new one with the key. Unless `restart`, fails on an unreadable
+// state or one with another key.
 Status open_state(const std::string& folder, const Json& key, bool restart, AccuracyState* state);
 // Replaces the state file atomically.
 Status save_state(const std::string& folder, const AccuracyState& state);

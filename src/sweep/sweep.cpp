@@ -25,7 +25,7 @@
 namespace pocketray {
 namespace {
 
-// Measurements of the baseline per round; all others are divided by them.
+// Baseline measurements per round; all others are divided by them.
 constexpr int kBaselineRuns = 3;
 constexpr std::uint32_t kRoundsMax = 1000;
 
@@ -34,7 +34,7 @@ struct Run {
   Rigs rigs;
   SweepPlan plan;
   AccuracyState state;
-  ReferencePictures reference, other;  // the one that the options choose, and the other kind
+  ReferencePictures reference, other;  // the chosen one, and the other kind
 };
 
 Transport chosen(const AccuracyOptions& o) { return o.reference == "model" ? Transport::model : Transport::physical; }
@@ -82,7 +82,7 @@ Json key_of(const Run& run, const Rig& rig) {
   return key;
 }
 
-// The picture that the rig's renderer holds, as the screen shows it. *bytes_per_frame, unless null, receives the bytes
+// Returns the picture in the rig's renderer as the screen shows it. *bytes_per_frame, unless null, receives the bytes
 // of its rows, in a build that can send them. After an interrupt *levels is meaningless.
 Status find_levels(const Run& run, Rig* rig, const Configuration& configuration, Levels* levels,
                    double* bytes_per_frame) {
@@ -126,7 +126,7 @@ Status find_errors(const Run& run, Rig* rig, const SweepPoint& point, PointFigur
   return success();
 }
 
-// The order of a round: points at random, the baseline several times.
+// Order of a round: points at random, the baseline several times.
 std::vector<std::size_t> round_order(const SweepPlan& plan, std::uint32_t round) {
   CHECK(!plan.points.empty());
   std::vector<std::size_t> order(kBaselineRuns, 0);
@@ -143,7 +143,7 @@ struct RoundProgress {
   double done = 0;
 };
 
-// Measures each point once. After an interrupt *whole is false and the times of the round are discarded.
+// Measures each point once. After an interrupt *whole is false and the round's times are discarded.
 Status measure_round(Run* run, RoundProgress* progress, bool* whole) {
   CHECK_LT(run->state.rounds, run->options.rounds);
   std::map<std::size_t, std::vector<double>> times;
@@ -233,8 +233,8 @@ Status add_strip(Run* run, const SweptKnob& swept, Sweep* sweep, bool* whole) {
   return success();
 }
 
-// Renders both references: the one knobs are compared with, and the one that gives the converged model's error against
-// full transport.
+// Renders both references: the one that knobs are compared with, and the one that gives the converged model's error
+// against full transport.
 Status render_references(Run* run, Sweep* sweep, bool* whole) {
   Rig* rig;
   RETURN_IF_ERROR(reference_rig(&run->rigs, &rig));

@@ -24,27 +24,27 @@ struct AccuracyOptions {
   bool starts_valgrind =
       false;  // if the CPU counts no instructions; only for a program started as `pocketray accuracy …`
   double save_seconds = 60;                     // between saves of a running reference
-  std::function<void(std::uint32_t)> row_done;  // called after samples of a reference's row, one at a time; may be null
-  Team team;                                    // its ranks take samples of references; this one measures
-  std::string counting_folder;                  // in the program that valgrind runs: the job to render; else empty
+  std::function<void(std::uint32_t)> row_done;  // called after each row of a reference, one at a time; may be null
+  Team team;                                    // its ranks take the references' samples; this one measures
+  std::string counting_folder;                  // in the process that valgrind runs: the job to render; otherwise empty
 };
 
-// A scene opened for all configurations with its geometry.
+// A scene opened for all configurations that share its geometry.
 struct Rig {
   OpenScene opened;
   Configuration baseline;             // as set by the options
   std::string scene_hash;             // of its content
-  std::string front_path;             // in the cache; empty: not identified, or looks other than it is
+  std::string front_path;             // in the cache; empty: not identified, or its look is overridden
   std::vector<std::uint32_t> packed;  // pixels of the last frame
   std::vector<std::uint8_t> reference_memory;
-  Reference reference;            // of the posed frame; made on demand
+  Reference reference;            // for the posed frame; made on demand
   std::uint32_t part_pixels = 0;  // frames are parts of about this many pixels; 0: the whole picture
 };
 
-// Opens the scene, with `sphere_columns` columns in cornell's sphere, for every configuration the knobs can produce.
+// Opens the scene, with `sphere_columns` columns in cornell's sphere, for every configuration of the knobs.
 Status open_rig(const AccuracyOptions& options, std::uint32_t sphere_columns, std::unique_ptr<Rig>* rig);
 
-// Makes rig->reference of the prepared frame, unless already made.
+// Makes rig->reference from the prepared frame, unless already made.
 void make_rig_reference(Rig* rig);
 
 // Reduces frames to about a sixteenth of the picture, spread over its tiles; a small picture stays whole. Leaves other
@@ -52,7 +52,7 @@ void make_rig_reference(Rig* rig);
 std::uint32_t take_part(Rig* rig);
 
 // Prepares, renders, packs and times a frame, after preparing one with the same settings. The picture stays in the
-// rig's renderer. Stops at an interrupt, for which the caller must check.
+// rig's renderer. Stops at an interrupt, which the caller must check for.
 Status time_frame(Rig* rig, const Configuration& configuration, double seconds, double* ns_per_pixel);
 
 // Instructions per pixel of tracing and packing, as in time_frame(); NaN if not counted or interrupted.

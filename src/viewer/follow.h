@@ -1,14 +1,14 @@
-// Whether the picture under way gives way to one with newer input. It does if the new one would be on the screen sooner
-// than the rest of it: while all goes as predicted it never does, since less of it is left than a new one takes, but one
-// that has come to a halt does. Of two pictures in a row one is shown, so a held button moves the screen at least every
-// two pictures, whatever the estimates are worth.
+// Decides whether the current picture is dropped for one with newer input: if the new one would be on screen before the
+// rest of the current one. As long as everything goes as predicted it never is, since less is left of it than a new one
+// takes, but a stalled picture is. At least every second picture is shown, so a held button keeps moving the screen,
+// however wrong the estimates are.
 #pragma once
 
 namespace pocketray {
 
 struct PictureChoice {
-  double left_ns = 0;           // estimated until the picture under way is shown
-  double anew_ns = 0;           // until a new one would be; 0: unknown, and no reason to drop anything
+  double left_ns = 0;           // estimated time until the current picture is shown
+  double anew_ns = 0;           // time until a new one would be; 0: unknown, which drops nothing
   bool dropped_before = false;  // the last picture was dropped unshown
 };
 

@@ -9,7 +9,7 @@
 namespace pocketray {
 namespace {
 
-// Names of the effects that are on, wrapped.
+// Adds the names of the effects that are on, wrapped.
 void add_effects(const EffectPlan& plan, HudText* text) {
   char line[kHudColumnMax + 1] = "";
   for (const EffectRow& row : kEffectList) {
@@ -24,7 +24,7 @@ void add_effects(const EffectPlan& plan, HudText* text) {
   if (line[0]) add_hud_line(text, "%s", line);
 }
 
-// How much of the last frame was traced.
+// Adds how much of the last frame was traced.
 void add_coherence(const Renderer& renderer, HudText* text) {
   const CoherenceState& state = renderer.coherence_state;
   if (!state.planned) return;
@@ -35,7 +35,7 @@ void add_coherence(const Renderer& renderer, HudText* text) {
     return;
   }
   CHECK_GE(renderer.image.count, 1u);
-  add_hud_line(text, "coherence: %.1f %% traced, %.0fk rays to find them",
+  add_hud_line(text, "coherence: %.1f %% traced, %.0fk search rays",
                100 * static_cast<double>(state.pixels_traced) / static_cast<double>(renderer.image.count),
                static_cast<double>(state.search.moving_rays + state.search.static_rays) * 1e-3);
 }

@@ -14,9 +14,9 @@ struct HudNote {
   std::uint32_t number = 0;    // count of notes so far
 };
 
-// Milliseconds per frame, nanoseconds per pixel of the picture, rays, memory, what coherence saved, effects on.
+// Milliseconds per frame, nanoseconds per pixel of the picture, rays, memory, savings by coherence, effects on.
 void write_hud(const Renderer& renderer, const Progressive& progressive, CameraMode mode, HudText* text);
-// Motion to photon, once there is any.
+// Motion to photon, once measured.
 void write_latency(const Motion& motion, HudText* text);
 void write_waiting(const char* what, double seconds, HudText* text);
 }  // namespace pocketray

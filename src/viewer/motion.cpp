@@ -7,7 +7,7 @@
 namespace pocketray {
 namespace {
 
-constexpr std::uint64_t kPressNs = 1'000'000;  // that a press counts as, at least
+constexpr std::uint64_t kPressNs = 1'000'000;  // minimum duration that a press counts as
 
 std::uint32_t index_of(std::uint64_t ns) {
   std::uint32_t octave = 0;
@@ -22,7 +22,7 @@ std::uint64_t least_of(std::uint32_t index) {
   return index == 0 ? 0 : base + base / kLatencyParts * (index % kLatencyParts);
 }
 
-// Motion whose latencies are spread evenly.
+// Adds motion whose latencies are spread evenly.
 void add_latencies(Motion* motion, std::uint64_t shortest_ns, std::uint64_t longest_ns) {
   CHECK_LE(shortest_ns, longest_ns);
   for (std::uint64_t at = shortest_ns; at < longest_ns;) {
@@ -53,7 +53,7 @@ void note_motion(Motion* motion, std::uint64_t begin_ns, std::uint64_t end_ns) {
 }
 
 void take_motion(Motion* motion) {
-  // Leaves room for what is noted next.
+  // Makes room for the next note.
   if (motion->span_count == kMotionSpansMax) {
     motion->spans[kMotionSpansMax - 2].end_ns = motion->spans[kMotionSpansMax - 1].end_ns;
     --motion->span_count;

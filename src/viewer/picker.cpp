@@ -20,7 +20,7 @@ using platform::Button;
 constexpr int kGap = 6, kTitleHeight = 14;  // pixels between cells, and for a title below a picture: a line and a gap
 constexpr int kStepX = kThumbnailWidth + kGap, kStepY = kThumbnailHeight + kTitleHeight + kGap;
 constexpr std::size_t kTitleLengthMax = 15;    // of 6 pixels each: 90, no wider than a picture
-constexpr std::uint64_t kRestNs = 30'000'000;  // between two looks at the buttons; chosen: feels immediate
+constexpr std::uint64_t kRestNs = 30'000'000;  // between two polls of the buttons; chosen: feels immediate
 // Display levels. Chosen: dark, so that pictures stand out, and white.
 constexpr std::uint8_t kBackground = 16, kEmpty = 48, kFrame = 255;
 
@@ -36,7 +36,7 @@ void fill(Sheet* sheet, int left, int top, int width, int height, std::uint8_t l
       std::memset(&sheet->rgb[3 * static_cast<std::size_t>(y * sheet->width + x)], level, 3);
 }
 
-// Reads a picture of ours: "P6\nWIDTH HEIGHT\n255\n" and the pixels.
+// Reads a picture of our own: "P6\nWIDTH HEIGHT\n255\n" and the pixels.
 void read_thumbnail(const std::string& path, PickerEntry* entry) {
   platform::LoadedFile file;
   platform::FileError error;
@@ -54,7 +54,7 @@ void read_thumbnail(const std::string& path, PickerEntry* entry) {
   platform::unload_file(&file);
 }
 
-// Where the selected entry is: the sheet shows whole rows of cells, the selected one among them.
+// Layout around the selected entry: the sheet shows whole rows of cells, the selected one among them.
 struct Grid {
   int columns, rows_shown, first_row, left;
 
@@ -96,7 +96,7 @@ void show(Viewer* viewer, const std::vector<PickerEntry>& entries, int selected,
   viewer->backend->end_frame(0, screen_height(*viewer));
 }
 
-// Where a button leads to; the same entry if nowhere.
+// Returns the entry that a button leads to; the current one if none.
 int moved(const Viewer& viewer, Button button, int selected, int count) {
   int columns = Grid(viewer, selected).columns, step = 0;
   if (button == Button::left) step = -1;

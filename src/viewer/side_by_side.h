@@ -21,9 +21,9 @@ struct SideBySideBackend {
   // Call with the scene open. Judges the picture as displayed with `bits_per_pixel`.
   SideBySide* (*open)(const SideBySideOptions& options, const Renderer& renderer, int bits_per_pixel, bool dither);
   void (*close)(SideBySide* side_by_side);
-  // Call with a finished picture: traces the reference of the same view and time until about `deadline_ns` of
-  // clock_ns(), restarting if view or time differ from the last call's. `picture` numbers the pictures. Settings stay;
-  // the renderer must prepare its next frame. Fails as prepare_frame() does.
+  // Call with a finished picture: traces the reference for this view and time until about `deadline_ns` of clock_ns(),
+  // restarting if view or time differ from the last call's. `picture` numbers the pictures. Settings stay; the renderer
+  // must prepare its next frame. Fails as prepare_frame() does.
   Status (*advance)(SideBySide* side_by_side, Renderer* renderer, double seconds, std::uint32_t picture,
                     std::uint64_t deadline_ns);
   // Discards the samples; call before view or time change.
@@ -35,7 +35,7 @@ struct SideBySideBackend {
   // Radiance of both halves, with a line between them; valid until the next call. Shows the picture where the reference
   // has no samples yet.
   const Vec3* (*picture)(SideBySide* side_by_side, const Renderer& renderer);
-  // The reference's name and samples, and the distance of the whole picture from it.
+  // Writes the reference's name and samples, and the whole picture's distance from it.
   void (*write_lines)(const SideBySide& side_by_side, HudText* text);
   void (*print)(const SideBySide& side_by_side);
 };

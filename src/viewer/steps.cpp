@@ -15,8 +15,8 @@ namespace pocketray {
 namespace {
 
 constexpr std::uint64_t kMillisecond = 1000000;
-// Chosen: 40 looks at the buttons a second feel immediate; idle, a few per display frame, or two display frames apart
-// if no button was used for a while.
+// Chosen: polling the buttons 40 times a second feels immediate; idle, a few times per display frame, or every second
+// display frame if no button was used for a while.
 constexpr std::uint64_t kSliceNs = 25 * kMillisecond;  // between two polls of the buttons
 constexpr std::uint64_t kIdleNs = 8 * kMillisecond, kLongIdleNs = 33 * kMillisecond;
 constexpr std::uint64_t kLongIdleAfterNs = 1000 * kMillisecond;
@@ -28,7 +28,7 @@ bool dims_kept_pixels(const Viewer& viewer) {
   return viewer.traced && !viewer.picture_merged && !shows_side_by_side(viewer);
 }
 
-// Packs and shows the changed rows. False if the screen takes no picture now.
+// Packs and shows the changed rows. Returns false if the screen takes no picture now.
 bool show_rows(Viewer* viewer, const Renderer& renderer, const HudText& text, std::uint32_t row_begin,
                std::uint32_t row_end) {
   CHECK(row_begin <= row_end && row_end <= renderer.settings.height);
@@ -43,7 +43,7 @@ bool show_rows(Viewer* viewer, const Renderer& renderer, const HudText& text, st
   std::uint32_t covered = std::min(hud_rows(shown), renderer.settings.height);
   if (covered > 0 || viewer->hud_rows_shown > 0)
     row_begin = 0, row_end = std::max(row_end, std::max(covered, viewer->hud_rows_shown));
-  // Which pixels are dim can change in any row.
+  // Dimming can change in any row.
   if (viewer->traced || viewer->traced_shown) row_begin = 0, row_end = renderer.settings.height;
   const Vec3* radiance = renderer.image.data;
   if (shows_side_by_side(*viewer))
@@ -70,7 +70,7 @@ bool show_rows(Viewer* viewer, const Renderer& renderer, const HudText& text, st
   return true;
 }
 
-// The same. `whole`: the whole screen then shows the picture under way.
+// Shows rows as show_rows() does. `whole`: the whole screen then shows the current picture.
 void show_picture(Viewer* viewer, const Renderer& renderer, const HudText& text, std::uint32_t row_begin,
                   std::uint32_t row_end, bool whole) {
   if (show_rows(viewer, renderer, text, row_begin, row_end) && whole)
@@ -83,9 +83,9 @@ bool is_overlay_shown(const Viewer& viewer) {
          viewer.traced == viewer.traced_shown;
 }
 
-// With a frame count, even a still is rendered again to reach it; with a reference, only once that has
-// kSideBySideSamples. Chosen: few, so that runs with a frame count end soon; more would make the error shown with the
-// picture more certain.
+// With a frame count, even a still is rendered repeatedly to reach it; with a reference, only once that has
+// kSideBySideSamples. Chosen: few, so that runs with a frame count end soon; more would make the displayed error more
+// certain.
 constexpr std::uint32_t kSideBySideSamples = 32;
 bool goes_on(const Viewer& viewer) { return viewer.options.frame_count > 0 && !shows_side_by_side(viewer); }
 
@@ -96,7 +96,7 @@ void write_picture_lines(const Viewer& viewer, const Renderer& renderer, ViewerL
   if (viewer.servers) viewer.servers->backend->write_lines(*viewer.servers, true, &loop->hud);
 }
 
-// Nothing has changed: refines the reference, or waits for the buttons.
+// Without changes: refines the reference, or waits for the buttons.
 Status idle(Viewer* viewer, Renderer* renderer, ViewerLoop* loop) {
   if (viewer->options.frame_count > 0 && !shows_side_by_side(*viewer)) loop->passed = true;  // hidden meanwhile
   bool refines = shows_side_by_side(*viewer) && !viewer->side_by_side->backend->is_full(*viewer->side_by_side);
@@ -152,14 +152,14 @@ Status refine(Viewer* viewer, Renderer* renderer, ViewerLoop* loop) {
   return success();
 }
 
-// A new picture is due: it is traced as before.
+// Returns to the former quality for a new picture.
 Status end_refining(Renderer* renderer, ViewerLoop* loop) {
   const bool refines = loop->refines;
   loop->refines = loop->exact = false;
   return refines ? set_quality(renderer, loop->quality) : success();
 }
 
-// The rows from the first to the last that the frame has traced are to be shown.
+// Marks the rows from the first to the last that the frame has traced for display.
 void mark_changed_rows(const Renderer& renderer, Progressive* progressive) {
   const Coherence& c = renderer.coherence;
   for (std::uint32_t row = 0; row < c.tile_rows; ++row) {
@@ -170,7 +170,7 @@ void mark_changed_rows(const Renderer& renderer, Progressive* progressive) {
   }
 }
 
-// Traces a slice of the picture: all of it, coarse first, or what has changed.
+// Traces a slice of the picture: all of it, coarse first, or only the changes.
 bool advance_picture(Renderer* renderer, ViewerLoop* loop) {
   Progressive* progressive = &loop->progressive;
   if (!loop->coherent.all) {
@@ -190,7 +190,7 @@ bool advance_picture(Renderer* renderer, ViewerLoop* loop) {
   if (complete) {
     renderer->coherence_state.pixels_traced = progressive->pixels_traced;
     finish_coherent(renderer, &loop->coherent);
-    progressive->trace_ns = loop->prepare_ns + loop->coherent.spent_ns;  // all that the frame took
+    progressive->trace_ns = loop->prepare_ns + loop->coherent.spent_ns;  // total time of the frame
   }
   return complete;
 }
@@ -199,8 +199,8 @@ bool is_visible(const ViewerLoop& loop) {
   return loop.finished || (loop.coherent.all && loop.progressive.shown_coarse);
 }
 
-// Whether a visible picture gives way to one with newer input, which would be visible before the rest of this one is
-// traced. What is left of a frame of changes is not known.
+// Returns whether a visible picture is dropped for one with newer input, which would be visible before the rest of this
+// one is traced. The remainder of a frame of changes is unknown.
 bool coarse_gives_way(const Renderer& renderer, const ViewerLoop& loop) {
   const Progressive& p = loop.progressive;
   if (!p.shown_coarse) return false;
@@ -214,8 +214,8 @@ bool coarse_gives_way(const Renderer& renderer, const ViewerLoop& loop) {
 
 // Begins the next picture once the current one is visible, traces a slice of it and shows it.
 Status step_picture(Viewer* viewer, Renderer* renderer, ViewerLoop* loop) {
-  // A moving camera is followed once a coarse picture is visible, unless that is finished sooner than a new one is
-  // visible. Time waits for the finished picture; so does the camera when finished frames are counted.
+  // Follows a moving camera once a coarse picture is visible, unless that is finished sooner than a new one is visible.
+  // Time waits for the finished picture; so does the camera if finished frames are counted.
   bool follow =
       loop->moved && viewer->options.frame_count == 0 && !loop->finished && coarse_gives_way(*renderer, *loop);
   if (follow || (loop->finished && (loop->moved || loop->passed))) {
@@ -238,7 +238,7 @@ Status step_picture(Viewer* viewer, Renderer* renderer, ViewerLoop* loop) {
     ++viewer->frames_finished;
     if (goes_on(*viewer)) loop->passed = true;
   }
-  // The cost of a frame of changes is known at its end; until then the display shows that of the one before.
+  // The cost of a frame of changes is known at its end; until then the display shows the previous frame's.
   if (loop->finished || loop->coherent.all) write_picture_lines(*viewer, *renderer, loop);
   std::uint32_t begin = 0, end = 0;
   take_dirty_rows(&loop->progressive, &begin, &end);
@@ -246,7 +246,7 @@ Status step_picture(Viewer* viewer, Renderer* renderer, ViewerLoop* loop) {
   return success();
 }
 
-// A still is rendered again until its settings settle: kSteadyFrames with the same settings, twice as long as the
+// A still is rendered repeatedly until its settings settle: kSteadyFrames with equal settings, twice as long as the
 // governor waits before it tries others (kTrialPause). kStillFramesMax, chosen, ends it if noise makes two candidates
 // alternate: after 4 s at 40 ms.
 constexpr std::uint32_t kSteadyFrames = 16, kStillFramesMax = 100;
@@ -290,7 +290,7 @@ Status step_budgeted(Viewer* viewer, Renderer* renderer, ViewerLoop* loop) {
   return success();
 }
 
-// Whether the split frame under way gives way to one with newer input. Counted frames never do.
+// Returns whether the current split frame is dropped for one with newer input. Counted frames never are.
 bool split_gives_way(const Viewer& viewer, const ViewerLoop& loop) {
   if (loop.finished || !loop.moved || viewer.options.frame_count > 0 || !viewer.options.drops_frames) return false;
   const ServersState state = viewer.servers->backend->state(*viewer.servers);
@@ -328,7 +328,7 @@ Status step_merged(Viewer* viewer, Renderer* renderer, ViewerLoop* loop) {
 
 // Chooses who renders the next picture: with servers in reach it completes soon, otherwise the device refines it alone.
 // When a server comes into reach, a picture still being refined is restarted with it, as a slow device may take
-// minutes. Within a split frame a moving camera is followed if its servers are gone, or as gives_way() says.
+// minutes. Within a split frame a moving camera is followed if its servers are gone, or if gives_way() says so.
 Status step_with_servers(Viewer* viewer, Renderer* renderer, ViewerLoop* loop) {
   const ServersBackend& servers = *viewer->servers->backend;
   if (!viewer->picture_merged || loop->finished) servers.tend(viewer->servers);

@@ -13,22 +13,22 @@ struct ViewerLoop {
   CoherentFrame coherent;
   Array<Span> tile_spans;
   HudText hud;
-  double seconds = 0;                 // of the animation
+  double seconds = 0;                 // animation time
   bool camera_moved = false;          // by the user, since the scene's own camera was shown
-  bool moved = false, passed = true;  // the camera has moved, time has passed: a new picture is due
+  bool moved = false, passed = true;  // camera or time has changed: a new picture is due
   bool finished = false;
-  std::uint64_t prepare_ns = 0;  // of the current picture
-  std::uint64_t coarse_ns = 0;   // that the last one took until it was visible
-  bool dropped = false;          // the last split picture gave way to a newer one before it was visible
-  bool coarse_shown = false;     // the screen shows the split picture under way, coarse
+  std::uint64_t prepare_ns = 0;  // for the current picture
+  std::uint64_t coarse_ns = 0;   // time until the last picture was visible
+  bool dropped = false;          // the last split picture was dropped for a newer one before it was visible
+  bool coarse_shown = false;     // the screen shows the current split picture, coarse
   bool moving = false;           // a button moves the camera
-  // With a budget: frames since camera or time moved, and how many of the latest had the same settings.
+  // With a budget: frames since camera or time moved, and how many of the latest had equal settings.
   std::uint32_t still_frames = 0, steady_frames = 0;
   bool settled = true;
-  // A picture with interpolated pixels that rests is traced again without.
-  bool refines = false;  // it is being traced so, and the next one with `quality`
+  // A picture with interpolated pixels is traced exactly once it rests.
+  bool refines = false;  // in progress; the next picture uses `quality`
   Quality quality;
-  bool exact = false;         // the picture at rest has been refined
+  bool exact = false;         // the resting picture has been refined
   std::uint64_t last_ns = 0;  // when camera and time last advanced; 0: not yet
 };
 

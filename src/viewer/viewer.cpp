@@ -20,7 +20,7 @@ namespace {
 using platform::Button;
 
 constexpr std::uint64_t kMillisecond = 1000000;
-// Chosen: a file counts as changed after two equal looks, so a model appears about a second after it was saved; a note
+// Chosen: a file counts as changed once two looks agree, so a model appears about a second after it was saved; a note
 // stays long enough to be read.
 constexpr std::uint64_t kFileCheckNs = 500 * kMillisecond, kNoteNs = 4000 * kMillisecond;
 
@@ -98,13 +98,13 @@ void answer_traced(Viewer* viewer, const Renderer& renderer) {
   if (!coherence.planned) {
     viewer->traced = false;
     bool can_be_on = renderer.settings.coherence != CoherenceMode::on;
-    std::snprintf(told, sizeof told, "T dims pixels that were not traced again, but all were, as %.80s%s",
+    std::snprintf(told, sizeof told, "T dims pixels that were not retraced; all were, since %.80s%s",
                   coherence.unplanned_because, can_be_on ? ": start with --coherence on to use it" : "");
     tell(viewer, told);
   } else if (viewer->picture_merged) {
-    tell(viewer, "T dims pixels that were not traced again, but not in frames shared with servers");
+    tell(viewer, "T dims pixels that were not retraced, but not in frames shared with servers");
   } else if (shows_side_by_side(*viewer)) {
-    tell(viewer, "T dims pixels that were not traced again: hide the reference with V to see it");
+    tell(viewer, "T dims pixels that were not retraced: hide the reference with V to see it");
   } else if (viewer->traced_presses % 2 != 0) {
     viewer->traced = !viewer->traced;
   }
@@ -117,7 +117,7 @@ void change_animation(Viewer* viewer, Renderer* renderer, ViewerLoop* loop) {
   if (viewer->animation_presses == 0) return;
   const char* refused = !has(renderer->effects.mask, Effect::animation) ? "N changes the animation, but nothing moves"
                         : scene.animations.empty()
-                            ? "N changes the animation, but the scene is on the servers alone: start with --animation"
+                            ? "N changes the animation, but only the servers have the scene: start with --animation"
                             : nullptr;
   for (; !refused && viewer->animation_presses > 0; --viewer->animation_presses)
     renderer->animation = renderer->animation == kNone                       ? 0
@@ -131,7 +131,7 @@ void change_animation(Viewer* viewer, Renderer* renderer, ViewerLoop* loop) {
   if (viewer->side_by_side) viewer->side_by_side->backend->forget(viewer->side_by_side);
 }
 
-// Responds to buttons that do nothing in this run.
+// Responds to buttons that have no function in this run.
 void answer_buttons(Viewer* viewer, Renderer* renderer) {
   if (viewer->screenshot) save_screenshot(viewer, renderer);
   viewer->screenshot = false;
@@ -161,7 +161,7 @@ bool is_file_changed(const Viewer& viewer, FileWatch* watch) {
 
 std::ptrdiff_t row_bytes(const Viewer& viewer) { return screen_width(viewer) * (viewer.format.bits_per_pixel / 8); }
 
-// Shows the last picture, or black, with a text over it, and handles events. False if the user quit.
+// Shows the last picture, or black, with a text over it, and handles events. Returns false if the user quit.
 bool show_text(Viewer* viewer, const HudText& text) {
   take_events(viewer);
   if (viewer->quit) return false;
@@ -180,7 +180,7 @@ bool show_text(Viewer* viewer, const HudText& text) {
     viewer->hud_rows_shown = std::min(hud_rows(text), static_cast<std::uint32_t>(viewer->height));
     viewer->backend->end_frame(0, screen_height(*viewer));
   }
-  viewer->backend->sleep_ns(50 * kMillisecond);  // chosen: 20 looks at the buttons a second feel immediate
+  viewer->backend->sleep_ns(50 * kMillisecond);  // chosen: polling the buttons 20 times a second feels immediate
   return true;
 }
 
@@ -205,7 +205,7 @@ void keep_view(Viewer* viewer, std::uint32_t animation, const ViewerLoop& loop) 
   viewer->kept.animation = animation;
 }
 
-// Restores the kept view, unless the reloaded scene cannot have it.
+// Restores the kept view, unless it is not possible in the reloaded scene.
 void take_kept_view(const Viewer& viewer, Renderer* renderer, ViewerLoop* loop) {
   if (viewer.kept.scene_path != viewer.scene_path) return;
   loop->seconds = viewer.kept.seconds;
@@ -216,7 +216,7 @@ void take_kept_view(const Viewer& viewer, Renderer* renderer, ViewerLoop* loop) 
   if (loop->camera_moved) loop->control.camera = viewer.kept.control.camera;
 }
 
-// Opens the first screen that works, except `null`, which must be named.
+// Opens the first screen that works, except `null`, which must be requested by name.
 Status open_any_screen(const platform::ScreenOptions& options, Viewer* viewer, platform::ScreenFormat* format) {
   std::string tried;
   for (int i = 0; i + 1 < platform::kBackendCount; ++i) {
@@ -247,7 +247,7 @@ Status open_screen(const platform::ScreenOptions& options, Viewer* viewer, platf
 // Advances camera and time; marks the picture as changed.
 Status step_scene(Viewer* viewer, Renderer* renderer, ViewerLoop* loop) {
   std::uint64_t now = viewer->backend->now_ns();
-  if (loop->last_ns == 0) loop->last_ns = now;  // the first picture shows the begin of the animation
+  if (loop->last_ns == 0) loop->last_ns = now;  // the first picture shows the start of the animation
   const std::uint64_t last_ns = loop->last_ns;
   float elapsed = static_cast<float>(std::min<std::uint64_t>(now - last_ns, 250 * kMillisecond)) * 1e-9f;
   loop->last_ns = now;
@@ -277,7 +277,7 @@ Status step_scene(Viewer* viewer, Renderer* renderer, ViewerLoop* loop) {
   return success();
 }
 
-// Allocates the pages and opens the screen; on failure, leaves resources to close_viewer().
+// Allocates the pages and opens the screen; on failure, leaves cleaning up to close_viewer().
 Status take_screen(const ViewOptions& options, int width, int height, Viewer* viewer) {
   CHECK(width > 0 && height > 0);
   CHECK(viewer->page_memory == nullptr && viewer->picture_memory == nullptr);

@@ -26,10 +26,10 @@ struct ViewOptions {
   std::uint32_t frame_count = 0;
   bool hud = true;             // shown from the start
   bool has_reference = false;  // the build has --side-by-side
-  bool drops_frames = true;    // a split frame that halts gives way to newer input; false: for comparisons
+  bool drops_frames = true;    // a stalled split frame is dropped for newer input; false: for comparisons
 };
 
-// Watches a file to reload it after a change, once writing has ended: when it looks the same twice in a row.
+// Watches a file in order to reload it after a change, once writing has ended: when two looks in a row agree.
 struct FileWatch {
   std::uint64_t loaded = 0, seen = 0;  // stamps
   std::uint64_t last_look_ns = 0;
@@ -48,8 +48,8 @@ struct Viewer {
   const platform::Backend* backend = nullptr;
   ViewOptions options;
   std::string scene_path;                   // reloaded when this file changes
-  Box focus = empty_box();                  // of the part that the camera turns around; empty: the scene
-  std::vector<std::string> material_names;  // of the scene shown, as far as known
+  Box focus = empty_box();                  // bounds of the part that the camera turns around; empty: the scene
+  std::vector<std::string> material_names;  // of the current scene, as far as known
   int width = 0, height = 0;
   Rotation rotation = Rotation::none;
   PixelFormat format;
@@ -67,21 +67,21 @@ struct Viewer {
   HudNote note;
   char dropped[1024] = {0};  // a file dropped on the window: the scene to show next
   bool held[platform::kButtonCount] = {};
-  bool quit = false, reload = false, screenshot = false, home = false, change_mode = false;  // asked for
-  int front_steps = 0;                                                                       // asked for
-  int side_by_side_presses = 0;                                                              // asked for
+  bool quit = false, reload = false, screenshot = false, home = false, change_mode = false;  // requested
+  int front_steps = 0;                                                                       // requested
+  int side_by_side_presses = 0;                                                              // requested
   bool side_by_side_changed = false;  // side_by_side_shown changed and the screen does not show it yet
-  bool front_home = false;            //   as the budget has it
-  int traced_presses = 0;             // asked for
-  int animation_presses = 0;          // asked for
+  bool front_home = false;            //   returns the choice to the budget
+  int traced_presses = 0;             // requested
+  int animation_presses = 0;          // requested
   bool hud = true, hud_shown = false, paused = false;
-  bool traced = false, traced_shown = false;  // dims the pixels kept from the last frame; the screen does
+  bool traced = false, traced_shown = false;  // dims reused pixels; the screen does so
   std::uint64_t event_ns = 0;                 // of the last button
   bool pressed = false;                       // one was pressed since the camera last moved,
-  std::uint64_t pressed_ns = 0;               //   the first of them then
+  std::uint64_t pressed_ns = 0;               //   the first such press
   Motion motion;                              // its way to the screen
   std::uint32_t note_shown = 0,
-                hud_rows_shown = 0;  // on the screen: the note's number, and the rows the overlay covers
+                hud_rows_shown = 0;  // on the screen: the note's number, and the rows that the overlay covers
   std::uint64_t waiting_since_ns = 0;
   std::uint32_t screenshot_count = 0, frames_finished = 0, frames_dropped = 0;
 };
@@ -92,15 +92,15 @@ std::size_t viewer_bytes(const Settings& settings);
 Status open_viewer(const ViewOptions& options, const char* scene, int width, int height, Viewer* viewer);
 // Call before loading the scene, to notice changes from then on.
 void watch_scene(Viewer* viewer);
-// Shows a sign of life while a scene loads, over the last picture if any, and handles events. False if the user quit.
+// Shows that a scene is loading, over the last picture if any, and handles events. Returns false if the user quit.
 bool show_waiting(Viewer* viewer, const char* text);
 // Shows why the scene failed to load, over the last picture, until its file changes, another is dropped or the user
-// reloads. False if the user quit.
+// reloads. Returns false if the user quit.
 bool wait_for_another(Viewer* viewer, const char* why);
 // Shows a message over the picture and prints it on stderr.
 void tell(Viewer* viewer, const char* text);
 // Runs until the user quits or options.frame_count frames are finished (*again false), or a reload is due (*again
-// true). Continues with the camera and time of viewer->kept if that is of this scene; keeps the view and the picture
+// true). Continues with the camera and time of viewer->kept if it belongs to this scene; keeps the view and the picture
 // for the next run. Allocates nothing, except for the reference.
 Status run_viewer(Viewer* viewer, Renderer* renderer, bool* again);
 // Safe on a viewer that is closed or was never opened.

@@ -1,5 +1,5 @@
-// Codes the rows of a chunk in blocks, from the lowest row upward, since servers send the rows below first. A block is
-// predicted from the frame before, moved by a motion vector, or from its neighbours in this one.
+// Codes the rows of a chunk in blocks, bottom row first, since servers send the lowest rows first. A block is predicted
+// from the previous frame, shifted by a motion vector, or from its neighbours in the current one.
 #pragma once
 #include <cstring>
 
@@ -9,11 +9,11 @@
 namespace pocketray {
 
 struct Block {
-  std::uint32_t column, width;       // of the picture
-  std::uint32_t row_begin, row_end;  // of the picture
+  std::uint32_t column, width;       // in the picture
+  std::uint32_t row_begin, row_end;  // in the picture
 };
 
-// Whether the block lies within the picture once moved.
+// Returns whether the moved block lies within the picture.
 inline bool may_move(const CodecShape& shape, const Block& block, BlockMotion motion) {
   const std::int32_t x = static_cast<std::int32_t>(block.column) + motion.x;
   const std::int32_t y = static_cast<std::int32_t>(block.row_begin) + motion.y;
@@ -21,7 +21,7 @@ inline bool may_move(const CodecShape& shape, const Block& block, BlockMotion mo
          y + static_cast<std::int32_t>(block.row_end - block.row_begin) <= static_cast<std::int32_t>(shape.height);
 }
 
-// The pixels of the frame before from which a row of the block is predicted.
+// Pixels of the previous frame from which a row of the block is predicted.
 template <class Pixel>
 const std::uint8_t* moved_row(const CodecState& s, const Block& block, BlockMotion motion, std::uint32_t row) {
   const std::int32_t from = static_cast<std::int32_t>(row) + motion.y;
@@ -40,8 +40,8 @@ std::int32_t code_motion(Coder* coder, BlockModel* model, int axis, bool other_d
   return falls ? from - size : from + size;
 }
 
-// False if the block would leave the picture. `beside` and `below` precede it: their kinds are its context, and the
-// motion of the first predicts its own.
+// Returns false if the block would leave the picture. `beside` and `below` are already coded: their kinds are the
+// context, and `beside` predicts the motion.
 template <class Coder>
 bool code_choice(Coder* coder, BlockModel* model, const CodecShape& shape, const Block& block,
                  const BlockChoice& beside, BlockKind below, BlockChoice* choice) {
@@ -64,20 +64,20 @@ bool code_choice(Coder* coder, BlockModel* model, const CodecShape& shape, const
   return true;
 }
 
-// Neighbours of a pixel that precede it. Outside the picture, and right of the block, they repeat others.
+// Already coded neighbours of a pixel. Outside the picture, and right of the block, they repeat other neighbours.
 struct Neighbours {
   std::uint32_t left, below, corner, beyond;  // beyond: right of `below`
 };
 
-// A row of a block: its pixels in the picture, those below and before it, and an encoder's.
+// A row of a block: its pixels in the picture, the row below, the previous frame and, `from`, an encoder's source.
 struct BlockRow {
   std::uint8_t* here;
   const std::uint8_t *below, *before, *from;
   std::uint32_t width;
-  bool has_left, has_beyond;  // pixels beside the row, of the block before, and beside the row below
+  bool has_left, has_beyond;  // pixels exist left of the row, in the block beside, and right of the row below
 };
 
-// Walks the pixels of a row from left to right: first_neighbours(), then next_neighbours() with each pixel.
+// Walks the pixels of a row from left to right: first_neighbours(), then next_neighbours() after each pixel.
 template <class Pixel>
 std::uint32_t pixel_beyond(const BlockRow& row, std::uint32_t i, std::uint32_t below) {
   return i + 1 < row.width || row.has_beyond ? Pixel::load(row.below + (i + 1) * Pixel::kBytes) : below;
@@ -97,7 +97,7 @@ void next_neighbours(const BlockRow& row, std::uint32_t i, std::uint32_t pixel, 
   n->beyond = pixel_beyond<Pixel>(row, i, n->below);
 }
 
-// Predicts the pixels of a row without differences.
+// Fills a row with its predicted pixels.
 template <class Pixel>
 void predict_row(const BlockRow& row) {
   if (row.before) {
@@ -113,7 +113,7 @@ void predict_row(const BlockRow& row) {
   }
 }
 
-// Whether a row has a pixel beyond the tolerance of its prediction, if all before it are as predicted.
+// Returns whether a pixel of the row is beyond the tolerance of its prediction, if all pixels before it equal theirs.
 template <class Pixel>
 bool row_differs(const BlockRow& row, std::uint32_t tolerance) {
   predict_row<Pixel>(row);
@@ -122,7 +122,7 @@ bool row_differs(const BlockRow& row, std::uint32_t tolerance) {
   return false;
 }
 
-// Codes the pixels of a row with differences. `differs` has those of the row below, and then of this one.
+// Codes the pixels of a row with differences. `differs` holds the row below's flags and receives this row's.
 template <class Pixel, class Coder>
 void code_row(Coder* coder, PixelModel* model, const BlockRow& row, std::uint32_t beside, std::uint32_t tolerance,
               std::uint8_t* differs) {
@@ -155,8 +155,8 @@ void code_row(Coder* coder, PixelModel* model, const BlockRow& row, std::uint32_
   }
 }
 
-// Codes a block's pixels into the state's picture. An encoder's come from `source`, the pixel at the block's first row
-// and column, and may differ from it by the tolerance.
+// Codes a block's pixels into the state's picture. An encoder reads them from `source`, which points at the block's
+// first pixel; they may deviate by the tolerance.
 template <class Pixel, class Coder>
 void code_pixels(Coder* coder, CodecState* s, const Block& block, const BlockChoice& choice, const std::uint8_t* source,
                  std::uint32_t tolerance) {
@@ -195,8 +195,8 @@ void copy_block(CodecState* s, const Block& block, BlockMotion motion) {
   std::memset(s->differs.data + 1 + block.column, 0, block.width);
 }
 
-// Codes the rows. An encoder asks `choose(block, beside, below, &choice)` how to predict each block. False, of a
-// decoder: no encoder writes this.
+// Codes the rows. An encoder asks `choose(block, beside, below, &choice)` how to predict each block. A decoder returns
+// false if no encoder could have written these bytes.
 template <class Pixel, class Coder, class Choose>
 bool code_blocks(Coder* coder, CodecState* s, std::uint32_t row_begin, std::uint32_t row_end,
                  const std::uint8_t* source, std::uint32_t tolerance, const Choose& choose) {

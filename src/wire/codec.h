@@ -1,6 +1,6 @@
-// Codec: rows of pixels ↔ bytes of a row_chunk. Blocks of pixels are predicted from the frame before, moved, or from
-// their neighbours; what differs goes through an adaptive range coder, whose statistics last as long as the connection.
-// PROTOCOL.md has the format. All memory comes from an arena once. Not thread-safe.
+// Codec: rows of pixels ↔ bytes of a row_chunk. Blocks of pixels are predicted from the previous frame, with motion, or
+// from their neighbours; differences go through an adaptive range coder, whose statistics last as long as the
+// connection. PROTOCOL.md has the format. All memory comes from an arena, once. Not thread-safe.
 #pragma once
 #include "base/arena.h"
 #include "base/status.h"
@@ -9,11 +9,11 @@
 
 namespace pocketray {
 
-// Bit of RowChunk::encoding: the rows are coded; otherwise they are pixels.
+// Bit of RowChunk::encoding: the rows are coded; otherwise they are raw pixels.
 constexpr std::uint8_t kEncodingCoded = 1;
-// The bits above number the chunks of a connection, which exposes repeated and reordered ones. The sender adds them to
-// the result of encode_rows(); the receiver removes them before decode_rows(). False if `count`, the number of chunks
-// before, differs.
+// The upper bits number the chunks of a connection, which exposes repeated and reordered chunks. The sender adds them
+// to the result of encode_rows(); the receiver removes them before decode_rows(). take_chunk_number() returns false if
+// the number is not that of the `count` chunks before.
 constexpr int kChunkNumberShift = 3;
 inline void add_chunk_number(RowChunk* chunk, std::uint32_t count) {
   chunk->encoding = static_cast<std::uint8_t>(chunk->encoding | count << kChunkNumberShift);
@@ -30,14 +30,14 @@ struct CodecShape {
   WireFormat format = WireFormat::rgb565;
 };
 
-// Whether a codec can be made for the shape: sides within kImageSideMax, chunks of at least one row that fit a message.
+// Returns whether a codec fits the shape: sides up to kImageSideMax, a chunk of at least one row fits a message.
 bool codec_shape_valid(const CodecShape& shape);
 
-// Chosen: blocks as large as what moves alike on a small screen, and as the rows of most chunks. Measured by
+// Chosen: about the size of areas that move together on a small screen, and the height of most chunks. Measured by
 // codec_frames_test.
 constexpr std::uint32_t kBlockColumns = 8, kBlockRows = 8;
 
-// Where a block was in the frame before, relative to where it is, in pixels.
+// Offset in pixels from a block to its prediction in the previous frame.
 struct BlockMotion {
   std::int16_t x = 0, y = 0;
 };
@@ -45,26 +45,26 @@ inline bool operator==(BlockMotion a, BlockMotion b) { return a.x == b.x && a.y 
 
 enum class BlockKind : std::uint8_t {
   spatial,   // predicted from neighbours
-  temporal,  // predicted from the frame before
-  exact,     // equals the frame before, moved
+  temporal,  // predicted from the previous frame
+  exact,     // equals the previous frame, moved
 };
 struct BlockChoice {
   BlockKind kind = BlockKind::spatial;
-  BlockMotion motion;  // of a spatial block: the one it would have
+  BlockMotion motion;  // spatial block: the motion it would have
 };
 
-// Both ends start with a black picture and change it alike, so that they always hold the same. Of every row they keep
-// the last two versions: those of the frame before predict a frame, whichever of its rows came first.
+// Both ends start with a black picture and update it identically. They keep the last two versions of every row: a frame
+// is predicted from the previous one, whichever of its rows arrived first.
 struct CodecState {
   CodecShape shape;
   Array<std::uint8_t> versions;     // 2 × height × width × pixel_bytes(format), and a black row
-  Array<std::uint8_t> current;      // of each row, which version was sent last
-  Array<std::uint32_t> row_frames;  // number of the frame in which a row was sent last
-  std::uint32_t frame = 0;          // of the last chunk
+  Array<std::uint8_t> current;      // per row: the version sent last
+  Array<std::uint32_t> row_frames;  // per row: number of the frame in which it was sent last
+  std::uint32_t frame = 0;          // frame of the last chunk
   CodeModels models;
-  Array<BlockChoice> blocks;    // of each column of blocks, the one coded last
-  Array<std::uint8_t> differs;  // of each column, whether the pixel coded last differed; one more at either end
-  std::uint8_t rows_differ[kBlockRows];  // of each row of the block beside: its last pixel (bit 0), any (bit 1)
+  Array<BlockChoice> blocks;             // per column of blocks: the one coded last
+  Array<std::uint8_t> differs;           // per column: whether the pixel coded last differed; one more at either end
+  std::uint8_t rows_differ[kBlockRows];  // per row of the block beside: last pixel differs (bit 0), any does (bit 1)
   bool broken = false;
 };
 
@@ -79,13 +79,13 @@ struct RowEncoder {
   CodecState state;
 };
 std::size_t row_encoder_need(const CodecShape& shape);
-// The encoder lies in the arena.
+// Allocates the encoder in the arena.
 void make_row_encoder(const CodecShape& shape, Arena* arena, RowEncoder** encoder);
 // Resets the encoder for another connection.
 void restart_row_encoder(RowEncoder* encoder);
 // Encodes rows [row_begin, row_begin + row_count) of a frame from `pixels`, which points at the first of them; rows are
-// unpadded. RowCoding::raw codes only what has not changed. Writes at most encoded_bytes_max() to `bytes`; returns the
-// number written and sets *encoding. The rows that the receiver gets are then in the encoder's picture.
+// unpadded. RowCoding::raw codes only chunks without changes. Writes at most encoded_bytes_max() to `bytes`; returns
+// the number written and sets *encoding. The encoder's picture then holds the rows as the receiver gets them.
 std::uint32_t encode_rows(RowEncoder* encoder, std::uint32_t frame, std::uint32_t row_begin, std::uint32_t row_count,
                           const std::uint8_t* pixels, RowCoding coding, std::uint8_t* bytes, std::uint8_t* encoding);
 
@@ -97,12 +97,12 @@ struct RowDecoder {
 std::size_t row_decoder_need(const CodecShape& shape);
 void make_row_decoder(const CodecShape& shape, Arena* arena, RowDecoder** decoder);
 void restart_row_decoder(RowDecoder* decoder);
-// Decodes a chunk. Must be called for every chunk of the connection in the order sent, wanted or not. True: the rows
-// are in the decoder's picture. False: no encoder wrote these bytes; the picture may be corrupt and the decoder is
-// unusable until restarted: end the connection.
+// Decodes a chunk. Must be called for every chunk of the connection in the order sent, wanted or not. Returns true if
+// the rows are in the decoder's picture. On false, no encoder wrote these bytes; the picture may be corrupt and the
+// decoder is unusable until restarted: end the connection.
 [[nodiscard]] bool decode_rows(RowDecoder* decoder, const RowChunk& chunk);
 
-// Whether no channel of any pixel differs by more levels than the tolerance.
+// Returns whether every channel of every pixel agrees within `tolerance` levels.
 bool pixels_close(WireFormat format, const std::uint8_t* a, const std::uint8_t* b, std::uint32_t pixel_count,
                   std::uint32_t tolerance);
 

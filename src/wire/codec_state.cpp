@@ -19,7 +19,7 @@ std::uint32_t raw_bytes(const CodecShape& shape, std::uint32_t row_count) {
   return static_cast<std::uint32_t>(row_bytes(shape) * row_count);
 }
 
-// A chunk that would take more coded is sent as it is.
+// A chunk that coding would lengthen is sent raw.
 std::uint32_t encoded_bytes_max(const CodecShape& shape, std::uint32_t row_count) {
   return raw_bytes(shape, row_count);
 }

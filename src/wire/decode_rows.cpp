@@ -5,7 +5,7 @@ namespace pocketray {
 namespace {
 
 bool decode_coded(CodecState* s, const RowChunk& chunk) {
-  // The coder reads zeros past the end, so that an encoder leaves them out.
+  // The coder reads zeros past the end, so encoders omit trailing zeros.
   if (chunk.bytes.count > 0 && chunk.bytes[chunk.bytes.count - 1] == 0) return false;
   RangeDecoder coder(chunk.bytes.data, chunk.bytes.count);
   auto chosen = [](const Block&, const BlockChoice&, const BlockChoice&, BlockChoice*) {};

@@ -6,7 +6,7 @@
 namespace pocketray {
 namespace {
 
-// Whether the rows are as they were when they were sent last.
+// Returns whether the rows are unchanged since they were last sent.
 bool is_unchanged(const CodecState& s, std::uint32_t row_begin, std::uint32_t row_count, const std::uint8_t* pixels) {
   const std::size_t stride = raw_bytes(s.shape, 1);
   for (std::uint32_t i = 0; i < row_count; ++i)
@@ -14,7 +14,7 @@ bool is_unchanged(const CodecState& s, std::uint32_t row_begin, std::uint32_t ro
   return true;
 }
 
-// Length of the code, or all of `capacity` if it does not suffice.
+// Returns the length of the code, or `capacity` if the code does not fit.
 template <class Pixel>
 std::size_t code_rows(CodecState* s, std::uint32_t row_begin, std::uint32_t row_count, const std::uint8_t* pixels,
                       std::uint32_t tolerance, std::uint8_t* bytes, std::size_t capacity) {

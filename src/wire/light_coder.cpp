@@ -11,11 +11,11 @@ namespace pocketray {
 namespace {
 
 constexpr int kChannels = 3;
-// Of a difference in bits: levels and what they are above another have 13, less the sign.
+// Levels, and the excess of one over another, have 13 bits without the sign.
 constexpr std::uint32_t kDifferenceBits = 14;
 static_assert(kLightLevelMax < 1u << (kDifferenceBits - 1), "differences of levels fit");
 
-// Of green's levels, and of what red's and blue's are above these.
+// Shared by green's levels and by the excess of red's and blue's over green's.
 struct DifferenceModel {
   Probability differs[kActivities], falls[kActivities];
   NumberModelOf<kDifferenceBits> size[kActivities];
@@ -34,7 +34,7 @@ int code_difference(Coder& coder, DifferenceModel* m, int activity, int value) {
   return falls ? -size : size;
 }
 
-// What continues the values on the left, above and between them, at an edge or on a slope [Weinberger 2000, sec.
+// Extrapolates the values on the left, above and between them, at an edge or on a slope [Weinberger 2000, sec.
 // III-A].
 int predicted(int left, int above, int corner) {
   if (corner >= std::max(left, above)) return std::min(left, above);
@@ -43,7 +43,7 @@ int predicted(int left, int above, int corner) {
 }
 
 struct Levels {
-  int channel[kChannels];  // green; red and blue less green
+  int channel[kChannels];  // green; red − green; blue − green
 };
 constexpr int kGreen = 1;
 
@@ -51,7 +51,7 @@ Levels levels_of(const Vec3& light) {
   const int green = static_cast<int>(light_level(light.y));
   return {{green, static_cast<int>(light_level(light.x)) - green, static_cast<int>(light_level(light.z)) - green}};
 }
-// False if a level is out of range.
+// Returns false if a level is out of range.
 bool light_of(const Levels& l, Vec3* light) {
   for (int c = 0; c < kChannels; ++c) {
     const int level = c == 0 ? l.channel[0] : l.channel[0] + l.channel[c];
@@ -61,10 +61,10 @@ bool light_of(const Levels& l, Vec3* light) {
   return true;
 }
 
-// By the differences coded on the left and above.
+// Context from the differences coded on the left and above.
 int activity_of(int left, int above) { return std::min(left + above, static_cast<int>(kActivities) - 1); }
 
-// Codes the lights in order; `wanted` gives a light's levels, given the predicted ones.
+// Codes the lights in order; `wanted` returns a light's levels, given the predicted ones.
 template <class Coder, class Wanted>
 bool code_light(Coder& coder, std::uint32_t columns, std::uint32_t rows, Vec3* light, Wanted wanted) {
   CHECK_LE(columns, kLightColumnsMax);

@@ -15,7 +15,7 @@ namespace {
 constexpr std::uint32_t kMagic = 0x59415250;  // "PRAY"
 constexpr std::uint32_t kChecksumAt = 4;
 
-// 0 means the scene's own.
+// 0 means the scene's own exposure.
 template <class Io>
 void own_or_exposure(Io& io, float* value) {
   raw_real(io, value);
@@ -79,7 +79,7 @@ void fields(Io& io, Camera* c) {
   choice(io, &c->projection, Projection::orthographic);
 }
 
-// A count or a choice is an integer of the row's size.
+// Counts and choices are integers of the row's size.
 template <class Io>
 void setting(Io& io, const SettingRow& row, Settings* settings) {
   if (row.wire_bytes == 0) return;
@@ -98,7 +98,7 @@ void setting(Io& io, const SettingRow& row, Settings* settings) {
   if (valid) row.field.set(settings, value);
 }
 
-// The settings that change pixels.
+// Settings that change pixels.
 constexpr std::uint32_t kSettingsBytes = 2 * 2 + setting_wire_bytes() + 2 * sizeof(EffectMask);
 template <class Io>
 void fields(Io& io, Settings* settings) {
@@ -107,7 +107,7 @@ void fields(Io& io, Settings* settings) {
   effects(io, &settings->forced_on), effects(io, &settings->forced_off);
 }
 
-// Which rows, and in what order they come.
+// The rows and their order.
 template <class Io>
 void row_fields(Io& io, FrameRequest* m, std::uint32_t height) {
   number(io, &m->row_begin), number(io, &m->row_end);
@@ -138,7 +138,7 @@ void fields(Io& io, FrameRequest* m) {
   io.require(asks_for_something(*m));
 }
 
-// The fields that change from frame to frame.
+// Fields that change from frame to frame.
 template <class Io>
 void change_fields(Io& io, FrameRequest* m) {
   number(io, &m->frame), real(io, &m->seconds, Quantity::seconds);
@@ -260,7 +260,7 @@ void fields_of_type(Io& io, Message* m) {
   }
 }
 
-// Bytes after the header: those of the fields, and the maximum of the data after them.
+// Bytes after the header: fixed fields, and the maximum of the data after them.
 struct PayloadSize {
   std::uint32_t fields, tail_max;
 };
@@ -287,19 +287,19 @@ constexpr PayloadSize kPayloadSizes[] = {
 constexpr std::uint32_t kTypeCount = sizeof kPayloadSizes / sizeof kPayloadSizes[0];
 static_assert(kTypeCount == static_cast<std::uint32_t>(MessageType::light_map) + 1, "one for each type");
 
-// The fields of any request, zeros behind them.
+// The fields of a request, zero-padded.
 struct RequestBytes {
   static constexpr PayloadSize kSize = kPayloadSizes[static_cast<std::uint32_t>(MessageType::frame_request)];
   std::uint8_t bytes[kSize.fields + kSize.tail_max] = {};
 };
-// False for one that no reader takes.
+// Returns false if no reader would accept the request.
 bool write_request(FrameRequest request, RequestBytes* to) {
   Writer writer = {to->bytes};
   fields(writer, &request);
   return writer.valid;
 }
 
-// A hello of another version ends after magic and version, or continues in any way.
+// A hello of another version may end after magic and version, or continue arbitrarily.
 constexpr std::uint32_t kForeignHelloBytesMin = 6, kForeignHelloBytesMax = 256;
 
 std::uint32_t tail_bytes(const Message& m) {

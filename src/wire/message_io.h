@@ -1,4 +1,4 @@
-// Reading, writing and checking the fields of a message.
+// Reads, writes and checks the fields of a message.
 #pragma once
 #include <cstring>
 
@@ -9,8 +9,8 @@ namespace pocketray {
 
 constexpr std::uint32_t kRunBytes = 2;  // of a RowRun
 
-// Reader and Writer process the fields of a message with the same function, fields(io, &message), so that both sides
-// agree. The length is checked before either runs, except for fields that may be absent.
+// Reader and Writer process a message with the same function, fields(io, &message), so that both sides agree. The
+// length is checked before either runs, except for optional fields.
 struct Reader {
   const std::uint8_t* at;
   const std::uint8_t* end;
@@ -34,7 +34,7 @@ struct Reader {
     *bytes = {at, static_cast<std::uint32_t>(end - at)};
     at = end;
   }
-  // The number of runs follows from the length.
+  // The length determines the number of runs.
   void length_of(std::uint8_t* run_count) {
     const std::size_t left = static_cast<std::size_t>(end - at);
     require(left % kRunBytes == 0 && left / kRunBytes <= kRunCountMax);
@@ -42,7 +42,7 @@ struct Reader {
   }
 };
 
-// A writer that is not valid in the end has been given values that no reader takes.
+// A writer is invalid at the end if it was given values that no reader accepts.
 struct Writer {
   std::uint8_t* at;
   bool valid = true;
@@ -66,7 +66,7 @@ struct Writer {
   void length_of(std::uint8_t* run_count) { require(*run_count <= kRunCountMax); }
 };
 
-// Visits the fields of a message to be sent and writes nothing.
+// Visits the fields of an outgoing message; writes nothing.
 struct Checker {
   bool valid = true;
 
@@ -92,7 +92,7 @@ void choice(Io& io, T* value, T last) {
   io.require(bits <= static_cast<std::uint64_t>(last));
   *value = static_cast<T>(bits);
 }
-// A number rounded down to 11 significant bits: these, below 5 bits of how far they are shifted.
+// A number rounded down to 11 significant bits, stored below a 5-bit shift.
 template <class Io>
 void rounded(Io& io, std::uint32_t* value) {
   constexpr std::uint32_t kBits = 11, kShiftMax = 32 - kBits;

@@ -8,10 +8,10 @@
 namespace pocketray {
 namespace {
 
-// Estimated bits, measured by codec_frames_test: a pixel that differs takes kDiffers, and more as its channels differ
-// more, up to kChannelMost each; another motion than the block beside takes kOtherMotion.
+// Estimated bits, measured by codec_frames_test: kDiffers for a pixel that differs, plus up to kChannelMost per
+// channel, growing with the difference; kOtherMotion for a motion other than that of the block beside.
 constexpr std::uint32_t kDiffers = 4, kChannelMost = 16, kOtherMotion = 8;
-constexpr int kStepsMax = 16;  // that the search follows
+constexpr int kStepsMax = 16;  // maximum length of the search
 constexpr int kSteps[4][2] = {{1, 0}, {-1, 0}, {0, 1}, {0, -1}};
 
 template <class Pixel>
@@ -27,12 +27,12 @@ const std::uint8_t* source_row(const MotionSearch& search, const Block& block, s
          (std::size_t(row - search.row_begin) * search.state->shape.width + block.column) * Pixel::kBytes;
 }
 
-// Whether a code can express how a motion differs from that of the block beside.
+// Returns whether the code can express the difference from the motion of the block beside.
 bool can_code(BlockMotion from, BlockMotion to) {
   return std::abs(to.x - from.x) <= kNumberMax && std::abs(to.y - from.y) <= kNumberMax;
 }
 
-// Stops at `enough`.
+// Returns early once the cost reaches `enough`.
 template <class Pixel>
 std::uint32_t temporal_cost(const MotionSearch& search, const Block& block, BlockMotion motion, std::uint32_t enough) {
   std::uint32_t cost = 0;
@@ -91,7 +91,7 @@ void choose_block(const MotionSearch& search, const Block& block, const BlockCho
   const BlockMotion still;
   if (!(still == beside.motion) && !(still == below.motion)) try_motion(0, 0);
   const std::uint32_t spatial = lowest > 0 ? spatial_cost<Pixel>(search, block, lowest) : 0;
-  // Follows each direction that is better as long as it is.
+  // Greedy descent: moves on as long as a direction is better.
   for (int step = 0, better = 1; better > 0 && lowest > kOtherMotion && spatial > kOtherMotion && step < kStepsMax;
        ++step) {
     better = 0;

@@ -8,11 +8,11 @@ struct MotionSearch {
   const CodecState* state;
   const std::uint8_t* pixels;  // of the chunk
   std::uint32_t row_begin;     // its first row
-  std::uint32_t tolerance;     // levels by which a channel may differ from what is sent
+  std::uint32_t tolerance;     // maximum deviation of a channel, in levels
 };
 
-// Follows the motion of the blocks around from better to better neighbours, as blocks of a picture seen by a moving
-// camera move nearly alike.
+// Starts at the motions of the surrounding blocks and descends to better ones: seen by a moving camera, neighbouring
+// blocks move alike.
 template <class Pixel>
 void choose_block(const MotionSearch& search, const Block& block, const BlockChoice& beside, const BlockChoice& below,
                   BlockChoice* choice);

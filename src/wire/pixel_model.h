@@ -1,5 +1,5 @@
-// The probabilities that both ends of the codec adapt, and the code of numbers and of pixels that differ from their
-// prediction. Coders are RangeEncoder or RangeDecoder: the same code serves both, so that they cannot disagree.
+// The probabilities that both ends of the codec adapt, and the coding of numbers and of pixels that differ from their
+// prediction. Coders are RangeEncoder or RangeDecoder: one code serves both, so they cannot disagree.
 #pragma once
 #include "wire/predict.h"
 #include "wire/range_coder.h"
@@ -9,7 +9,7 @@ namespace pocketray {
 constexpr std::uint32_t kLengthsMax = 8;  // bits of a number above 0
 constexpr int kNumberMax = (1 << kLengthsMax) - 1;
 
-// Of numbers from 1: how many bits follow the first, and the one that follows it. The others are even.
+// Codes numbers from 1: how many bits follow the leading one, and the first of those. The remaining bits are even.
 template <std::uint32_t lengths_max>
 struct NumberModelOf {
   Probability length[lengths_max], second[lengths_max];
@@ -18,7 +18,7 @@ using NumberModel = NumberModelOf<kLengthsMax>;
 
 constexpr std::uint32_t kPixelContexts = 64, kActivities = 4;
 
-// Of pixels predicted in one way.
+// Model of pixels with one kind of prediction.
 struct PixelModel {
   Probability row_differs[4];  // any pixel of the block's row; by the rows beside and below
   Probability differs[kPixelContexts];
@@ -48,7 +48,7 @@ inline std::uint32_t bits_after_first(std::uint32_t value) {
   return 31u - static_cast<std::uint32_t>(__builtin_clz(value));
 }
 
-// A number from 1 that has at most `bits_max` bits, at most lengths_max. An encoder returns it, too.
+// Codes a number from 1 with at most `bits_max` bits, at most lengths_max. An encoder returns it, too.
 template <class Coder, std::uint32_t lengths_max>
 std::uint32_t code_number(Coder* coder, NumberModelOf<lengths_max>* model, std::uint32_t bits_max,
                           std::uint32_t value) {
@@ -60,8 +60,8 @@ std::uint32_t code_number(Coder* coder, NumberModelOf<lengths_max>* model, std::
   return number << rest | coder->even_bits(value & ((1u << rest) - 1), rest);
 }
 
-// A pixel other than its prediction: per channel, the difference modulo the channel's levels. `activity` tells how much
-// the pixel's neighbours differ; for later channels, it tells how much the one before does.
+// Codes a pixel other than its prediction: per channel, the difference modulo the channel's levels. `activity` is how
+// much the pixel's neighbours differ; for later channels, how much the channel before does.
 template <class Pixel, class Coder>
 std::uint32_t code_difference(Coder* coder, PixelModel* model, std::uint32_t activity, std::uint32_t predicted,
                               std::uint32_t pixel) {
@@ -69,14 +69,14 @@ std::uint32_t code_difference(Coder* coder, PixelModel* model, std::uint32_t act
   bool any = false;
   for (int i = 0; i < 3; ++i) {
     const std::uint32_t levels = 1u << Pixel::kBits[i], from = channel_of<Pixel>(predicted, i);
-    std::uint32_t up = (channel_of<Pixel>(pixel, i) - from) & (levels - 1);  // of an encoder
+    std::uint32_t up = (channel_of<Pixel>(pixel, i) - from) & (levels - 1);  // encoder only
     bool falls = up > levels / 2;
     const bool must_differ = i == 2 && !any;
     signs *= 3;
     if (must_differ || coder->bit(&model->channel_differs[i][signs / 3][activity], up != 0)) {
       any = true;
       falls = coder->bit(&model->sign[i][signs / 3], falls) != 0;
-      // At most levels / 2, which has as many bits as levels − 1.
+      // At most levels / 2, which has the bit length of levels − 1.
       const std::uint32_t size =
           code_number(coder, &model->difference[i][activity], Pixel::kBits[i], falls ? levels - up : up);
       up = falls ? 0u - size : size;

@@ -1,4 +1,4 @@
-// Pixels of the wire's formats as channels, and their spatial prediction: per channel the median of two neighbours and
+// Pixels of the wire's formats as channels, and their spatial prediction: per channel, the median of two neighbours and
 // the plane through three (LOCO-I [Weinberger, Seroussi & Sapiro 2000, sec. III-A]).
 #pragma once
 #include <cstdint>
@@ -8,7 +8,7 @@ namespace pocketray {
 // RGB565, little-endian.
 struct Pixel565 {
   static constexpr std::uint32_t kBytes = 2;
-  // In the order coded: green, red, blue.
+  // In coding order: green, red, blue.
   static constexpr std::uint32_t kShift[3] = {5, 11, 0}, kBits[3] = {6, 5, 5};
   static std::uint32_t load(const std::uint8_t* p) { return p[0] | std::uint32_t(p[1]) << 8; }
   static void store(std::uint8_t* p, std::uint32_t pixel) {
@@ -34,7 +34,7 @@ std::uint32_t channel_of(std::uint32_t pixel, int channel) {
   return pixel >> Pixel::kShift[channel] & ((1u << Pixel::kBits[channel]) - 1);
 }
 
-// `corner` lies between the neighbours that precede the pixel in its row and in its column.
+// `corner` lies between `left` and `below`, which precede the pixel in its row and column.
 template <class Pixel>
 std::uint32_t predict(std::uint32_t left, std::uint32_t below, std::uint32_t corner) {
   if (left == corner) return below;
@@ -49,7 +49,7 @@ std::uint32_t predict(std::uint32_t left, std::uint32_t below, std::uint32_t cor
   return result;
 }
 
-// Whether all channels are within the tolerance.
+// Returns whether all channels agree within the tolerance.
 template <class Pixel>
 bool is_close(std::uint32_t a, std::uint32_t b, std::uint32_t tolerance) {
   if (a == b || tolerance == 0) return a == b;

@@ -1,12 +1,12 @@
 // Adaptive binary range coding [Martin 1979], with carries resolved as they occur [Schindler 1998]: both ends adapt the
-// probability of each kind of bit alike, so that a bit takes as little as a 40th of a bit. Integers only.
+// probability of each kind of bit identically, and a bit costs as little as 1/40 bit. Integers only.
 #pragma once
 #include <cstddef>
 #include <cstdint>
 
 namespace pocketray {
 
-// That a bit is 0, in 4096ths; 15 to 4081.
+// Probability that a bit is 0, in 4096ths; 15 to 4081.
 using Probability = std::uint16_t;
 constexpr std::uint32_t kProbabilityBits = 12;
 constexpr Probability kEven = 1u << (kProbabilityBits - 1);
@@ -19,14 +19,14 @@ inline void adapt(Probability* probability, std::uint32_t bit) {
       static_cast<Probability>(bit ? p - (p >> kAdaptShift) : p + (((1u << kProbabilityBits) - p) >> kAdaptShift));
 }
 
-// Writes at most `capacity` bytes; beyond them, it only notes that they do not suffice.
+// Writes at most `capacity` bytes; beyond them it only records the overflow.
 class RangeEncoder {
  public:
   static constexpr bool kEncodes = true;
 
   RangeEncoder(std::uint8_t* bytes, std::size_t capacity) : begin_(bytes), at_(bytes), end_(bytes + capacity) {}
 
-  // Both return what they code, as the decoder does.
+  // Both return the coded value, as the decoder does.
   std::uint32_t bit(Probability* probability, std::uint32_t value) {
     const std::uint32_t bound = (range_ >> kProbabilityBits) * *probability;
     if (value) {
@@ -39,7 +39,7 @@ class RangeEncoder {
     normalise();
     return value;
   }
-  // The low `count` bits of a value, each as likely 0 as 1; high bits first.
+  // Codes the low `count` bits of a value with even probability; high bits first.
   std::uint32_t even_bits(std::uint32_t value, std::uint32_t count) {
     while (count-- > 0) {
       range_ >>= 1;
@@ -50,9 +50,9 @@ class RangeEncoder {
   }
 
   bool overflows() const { return overflows_; }
-  // Ends the code; returns its length. The decoder reads zeros past the end, so none are written there.
+  // Ends the code and returns its length. The decoder reads zeros past the end, so trailing zeros are not written.
   std::size_t finish() {
-    // Of the values within the range, the one with the most zeros at its end.
+    // Picks the value within the range that has the most trailing zeros.
     const std::uint64_t high = low_ + range_ - 1;
     std::uint64_t value = low_;
     for (int zeros = 31; zeros >= 0; --zeros) {
@@ -74,11 +74,11 @@ class RangeEncoder {
   }
   void put(std::uint32_t byte) {
     if (at_ == end_)
-      overflows_ = overflows_ || (byte & 255) != 0;  // zeros at the end are left out anyway
+      overflows_ = overflows_ || (byte & 255) != 0;  // trailing zeros are omitted anyway
     else
       *at_++ = static_cast<std::uint8_t>(byte);
   }
-  // Moves the top byte of `low` out, once no carry can change it any more.
+  // Shifts out the top byte of `low` once no carry can change it.
   void shift_low() {
     const std::uint32_t carry = static_cast<std::uint32_t>(low_ >> 32), low = static_cast<std::uint32_t>(low_);
     if (low < 0xFF000000u || carry != 0) {
@@ -95,11 +95,11 @@ class RangeEncoder {
   std::uint8_t *begin_, *at_, *end_;
   std::uint64_t low_ = 0;
   std::uint32_t range_ = ~0u;
-  std::uint32_t held_ = 0, ones_ = 0;  // the byte that a carry may change, and bytes 0xFF behind it
+  std::uint32_t held_ = 0, ones_ = 0;  // byte that a carry may still change, and the number of 0xFF bytes behind it
   bool is_first_ = true, overflows_ = false;
 };
 
-// Decodes any bytes to something.
+// Accepts arbitrary bytes; any input decodes to something.
 class RangeDecoder {
  public:
   static constexpr bool kEncodes = false;
@@ -131,7 +131,7 @@ class RangeDecoder {
     }
     return value;
   }
-  // Whether all bytes were read, as they are of every code.
+  // Returns whether all bytes were read, as for every valid code.
   bool is_at_end() const { return at_ == end_; }
 
  private:

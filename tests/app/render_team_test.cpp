@@ -106,7 +106,7 @@ TEST_CASE("render_team_ends_early") {
   CHECK(std::string(failed.status.message) == "rank 2: disk full");
   Heard differs = render_all(
       2, 100000, [&](const Team&, std::uint32_t) { return pause(), success(); }, true);
-  CHECK(std::string(differs.status.message).find("rank 1: its scene or program is not that of rank 0") == 0);
+  CHECK(std::string(differs.status.message).find("rank 1: its scene or program differs from rank 0's") == 0);
   std::atomic<int> count{0};
   Heard stopped = render_all(3, 100000, [&](const Team&, std::uint32_t) {
     pause();

@@ -198,7 +198,7 @@ odd() {  # COMMAND SCENE : rank 1 has that scene
 odd reference nowhere.glb
 expect odd_without_scene 1 'rank 1: nowhere.glb' "${reference[@]}" --samples 2000000 -o odd.pfm
 odd reference furnace
-expect odd_scene 1 'rank 1: its scene or program is not that of rank 0' "${reference[@]}" --samples 2000000 -o odd.pfm
+expect odd_scene 1 "rank 1: its scene or program differs from rank 0's" "${reference[@]}" --samples 2000000 -o odd.pfm
 if "$program" --help | grep -q '^ *serve '; then
   odd serve --memory=32M
   expect odd_options 1 "rank 1: its program or options differ from rank 0's" serve --memory=64M --listen 127.0.0.1:0
@@ -206,6 +206,6 @@ fi
 odd render cube
 "${run[@]}" render seesaw "${tiny[@]}" --turntable 3600 -o one/odd.png >odd.out 2>&1
 check odd_frames test $? -eq 1
-check odd_frames_says_so grep -q '^pocketray: rank 1: its scene or program is not that of rank 0' odd.out
+check odd_frames_says_so grep -q "^pocketray: rank 1: its scene or program differs from rank 0's" odd.out
 
 finish

@@ -131,7 +131,7 @@ TEST_CASE("reference_team_ends_if_a_rank_differs") {
   AccuracyOptions other = small_cube("16x16"), missing = small_cube();
   missing.common.scene = "no_such_scene";
   Result differs = take(goal, 3, nullptr, &other);
-  CHECK(std::string(differs.status.message).find("rank 2: its scene or program is not that of rank 0") == 0);
+  CHECK(std::string(differs.status.message).find("rank 2: its scene or program differs from rank 0's") == 0);
   Result fails = take(goal, 2, nullptr, &missing);
   CHECK(std::string(fails.status.message).find("rank 1: no_such_scene") == 0);
 }

@@ -158,7 +158,7 @@ TEST_CASE("viewer_shows_what_coherence_saves") {
       CHECK(state.pixels_traced > 0);
       CHECK(state.pixels_traced < renderer->image.count);
       char expected[100];
-      std::snprintf(expected, sizeof expected, "coherence: %.1f %% traced, %.0fk rays to find them",
+      std::snprintf(expected, sizeof expected, "coherence: %.1f %% traced, %.0fk search rays",
                     100 * static_cast<double>(state.pixels_traced) / renderer->image.count,
                     static_cast<double>(state.search.moving_rays + state.search.static_rays) / 1000);
       CHECK(hud_line(loop.hud, "coherence") == expected);
@@ -187,6 +187,6 @@ TEST_CASE("viewer_shows_what_coherence_saves") {
       finish_picture(1.1, &stage.viewer, renderer, &loop);
     }
     finish_picture(1.1, &stage.viewer, renderer, &loop);
-    CHECK(hud_line(loop.hud, "coherence") == (coherent ? "coherence: 0.0 % traced, 0k rays to find them" : ""));
+    CHECK(hud_line(loop.hud, "coherence") == (coherent ? "coherence: 0.0 % traced, 0k search rays" : ""));
   }
 }

@@ -10,7 +10,7 @@
 namespace pocketray {
 namespace {
 
-// Whether a texture of the material's clear coat has a property.
+// Returns whether a texture of the material's clear coat has a property.
 template <class Property>
 bool any_of_coat(const Scene& scene, std::uint32_t material, Property property) {
   const ClearCoat* coat = coat_of(scene, material);
@@ -31,7 +31,7 @@ bool reads_levels(const Scene& scene, std::uint32_t material) {
          has_levels(maps.normal) || has_levels(maps.occlusion);
 }
 
-// Whether a texture other than that of occlusion reads the second texture coordinates.
+// Returns whether a texture other than the occlusion texture reads the second texture coordinates.
 bool reads_second(const Scene& scene, std::uint32_t material) {
   auto second = [&](const TextureUse& use) { return use.texture != kNone && reads_second_uvs(scene, use); };
   const Material& m = scene.materials[material];

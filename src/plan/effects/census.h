@@ -1,16 +1,16 @@
-// Counts of what may call for an effect.
+// Counts of the scene content that may call for an effect.
 #pragma once
 #include "effect/settings.h"
 #include "scene/scene.h"
 
 namespace pocketray {
 
-// Counts of materials with a property, among those that triangles use.
+// Number of materials with each property, among those that triangles use.
 struct Census {
   std::uint32_t materials = 0, specular = 0, mirror = 0, transmitting = 0, absorbing = 0, masked = 0, blended = 0,
                 emissive = 0, unlit = 0, textured = 0, scattering = 0, one_sided = 0, reflecting = 0, diffuse = 0,
                 metallic_roughness = 0, bumpy = 0, occluded = 0, with_levels = 0, grained = 0, second_uv = 0,
-                second_uv_occlusion = 0,  // of the latter, only that of occlusion
+                second_uv_occlusion = 0,  // of these, only the occlusion texture does
       coated = 0;
   std::uint32_t lights[3] = {0, 0, 0};
 };

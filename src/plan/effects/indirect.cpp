@@ -18,7 +18,7 @@ const IndirectInfo& info_of(Effect effect) {
   return IndirectList::kInfos[0];
 }
 
-// Methods stand in for each other's light, so a plan has only one of them.
+// Methods represent the same light, so a plan has only one of them.
 template <Effect effect>
 EffectDecision decide_method(const EffectCall& c) {
   const IndirectInfo& info = info_of(effect);

@@ -40,7 +40,7 @@ EffectDecision decide_environment(const EffectCall& c) {
                  environment->side, static_cast<double>(max_component(environment->radiance_max)));
 }
 
-// Shadows from the environment are traced for its diffuse light, pixel by pixel.
+// Environment shadows are traced for its diffuse light, per pixel.
 EffectDecision decide_environment_shadow(const EffectCall& c) {
   if (!shows_environment(c)) return decided(false, "no environment");
   if (c.settings.indirect == IndirectChoice::none) return decided(false, "no indirect light requested");

@@ -6,7 +6,7 @@
 
 namespace pocketray {
 
-// What rules read.
+// Input of the rules.
 struct EffectCall {
   const Scene& scene;
   const Settings& settings;
@@ -27,8 +27,8 @@ Array<const EffectRule> light_rules();
 Array<const EffectRule> indirect_rules();
 Array<const EffectRule> picture_rules();
 
-// The method that --indirect asks for, or else the last one that the scene has by default; null: none. If the scene
-// lacks what the method needs, the choice is as for auto.
+// Returns the method that --indirect asks for or, if the scene lacks what it needs, the last one that the scene has by
+// default, as for auto; null: none.
 const IndirectInfo* choose_indirect(const Scene& scene, const Settings& settings);
 
 // A decision with its reason.

@@ -1,4 +1,4 @@
-// A configuration's picture as a device shows it whose rows come from a render server, and what they take on the way.
+// A configuration's picture as shown by a device whose rows come from a render server, and their size on the wire.
 #pragma once
 #include "sweep/sweep.h"
 
@@ -6,12 +6,12 @@ namespace pocketray {
 
 struct SentPicture {
   Levels levels;
-  double bytes_per_frame = kNotMeasured;  // of rows, without messages; mean of the frames after the first
+  double bytes_per_frame = kNotMeasured;  // of rows, without messages; mean over the frames after the first
 };
 
-// Renders frames of a camera that orbits its target by kSentOrbitDegrees a frame and comes to rest where the rig's is,
-// at one time, and sends their rows losslessly or near-losslessly, as the configuration says. The last frame stays in
-// the rig's renderer. After an interrupt *sent is meaningless.
+// Renders frames with a camera that orbits its target by kSentOrbitDegrees per frame and ends at the rig's, at a fixed
+// time, and sends their rows losslessly or near-losslessly, as configured. The last frame stays in the rig's renderer.
+// After an interrupt *sent is meaningless.
 Status send_frames(Rig* rig, const Configuration& configuration, double seconds, SentPicture* sent);
 
 }  // namespace pocketray

@@ -14,8 +14,8 @@
 namespace pocketray {
 namespace {
 
-// Per seed. Chosen: where a pixel's samples deviate by as much as display white, the mean of both seeds has noise
-// of 1.4 levels of 256; four times as many samples would halve it.
+// Per seed. Chosen: if a pixel's samples deviate by as much as display white, the mean of both seeds has noise of 1.4
+// levels of 256; four times as many samples would halve it.
 constexpr std::uint32_t kSamplesMax = 1u << 14;
 constexpr std::uint32_t kSeedCount = 2;  // their difference estimates the reference's own error
 
@@ -26,7 +26,7 @@ bool is_same(const Camera& a, const Camera& b) {
 }
 
 struct Errors {
-  std::uint32_t picture = 0, samples = 0;  // picture and sample count measured; no samples: not measured
+  std::uint32_t picture = 0, samples = 0;  // picture and sample count at the last measurement; no samples: not measured
   double flip = 0, rmse = 0, reference_rmse = 0;
 };
 
@@ -40,7 +40,7 @@ struct ReferenceView : SideBySide {
   Camera camera;
   double seconds = 0;
   std::uint32_t width = 0, height = 0;
-  std::uint32_t samples = 0, row = 0;  // per pixel; rows before this one have one more
+  std::uint32_t samples = 0, row = 0;  // per pixel; earlier rows have one more
   Errors errors;
   std::vector<LightPoint> lights;
   std::vector<std::uint8_t> memory;                // the reference's
@@ -129,7 +129,7 @@ std::vector<Vec3> mean_of_seeds(const ReferenceView& view, std::initializer_list
   return mean;
 }
 
-// Call when all pixels have the same number of samples.
+// Call when all pixels have equally many samples.
 void measure_errors(ReferenceView* view, const Renderer& renderer) {
   SealPause pause;
   std::vector<double> light = exposed_light(renderer.image.data, renderer.image.count, renderer.exposure);
