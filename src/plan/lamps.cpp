@@ -58,6 +58,7 @@ bool is_convex(const Scene& scene, const Lamp* pieces, std::uint32_t count) {
 
 // Adds the pieces of a material that is to be divided. Returns the number of lamps that it becomes.
 std::uint32_t divide(const Scene& scene, std::uint32_t material, LampPieces* all) {
+  CHECK(all != nullptr);
   Lamp pieces[kPiecesMax];
   std::uint32_t count = 0;
   for (std::uint32_t i = 0; i < scene.triangles.count; ++i) {
@@ -78,6 +79,7 @@ std::uint32_t divide(const Scene& scene, std::uint32_t material, LampPieces* all
 }  // namespace
 
 bool is_part_of(const Scene& scene, const Lamp& lamp, std::uint32_t triangle) {
+  CHECK_LE(lamp.end, scene.triangles.count);
   if (triangle < lamp.begin || triangle >= lamp.end || scene.triangles[triangle].material() != lamp.material)
     return false;
   return lamp.piece == kNone || lamp.piece == triangle || is_in_plane(scene, lamp.piece, triangle);

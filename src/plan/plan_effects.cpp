@@ -24,6 +24,7 @@ void apply_force(const EffectRule& rule, const EffectCall& call, EffectDecision*
   const bool forced_on = has(call.settings.forced_on, rule.effect) && (!rule.may_be_forced || rule.may_be_forced(call));
   const bool on = (decision->on || forced_on) && !has(call.settings.forced_off, rule.effect);
   if (on == decision->on) return;
+  CHECK(decision->reason[0] != 0);
   const EffectDecision before = *decision;
   *decision = decided(on, "%s (%.60s)", on ? "forced on" : "forced off", before.reason);
 }

@@ -10,7 +10,7 @@ namespace {
 constexpr double kParallel = 0.9;  // cosine between the normals of a sheet and the surface below it
 constexpr double kInPlane = 1e-3;  // of a patch's side
 
-// Whether a sheet stands on or hangs above a side of a surface and keeps light from it.
+// Returns whether a sheet stands on or hangs above a side of a surface and blocks light from it.
 bool is_above(const Scene& scene, const Surfaces& surfaces, const FlatSurface& flat, std::uint32_t sheet, bool back) {
   const Material& m = scene.materials[scene.triangles[sheet].material()];
   if (surfaces.flat_of[sheet] != kNone && &surfaces.flat[surfaces.flat_of[sheet]] == &flat) return false;
@@ -22,7 +22,7 @@ bool is_above(const Scene& scene, const Surfaces& surfaces, const FlatSurface& f
   return m.double_sided || dot(surfaces.normal[sheet], normal) < kParallel;
 }
 
-// Whether an edge runs inside a surface's rectangle, not along its border.
+// Returns whether an edge runs inside a surface's rectangle, not along its border.
 bool is_inside(const FlatSurface& flat, const CutEdge& edge, double margin) {
   const Vec3d axes[2] = {flat.s, flat.t};
   const double size[2] = {flat.width, flat.height};

@@ -111,7 +111,7 @@ struct GridPlacer {
   RadiositySolution* solution;
   int cuts_left;
 
-  // Whether a barrier stands on a line at a point of it, or ends within `reach` of that.
+  // Returns whether a barrier crosses a line at a point of it, or ends within `reach` of that point.
   bool is_closed(const Line& line, const Vec3d& at, double reach) const {
     for (const Barrier& barrier : barriers) {
       const Vec3d way = barrier.b - barrier.a;

@@ -30,7 +30,7 @@ struct Patch {
   bool is_back, is_flat, double_sided;     // is_flat: a cell of a flat surface
 };
 
-// Whether light stored on the material's surfaces is ever seen.
+// Returns whether light stored on the material's surfaces is ever seen.
 inline bool reflects(const Material& m) { return !m.unlit && !(is_zero(m.diffuse) && is_zero(m.specular)); }
 
 // The front patches of all surfaces: cells of flat surfaces, and clusters of the other triangles by place and

@@ -40,7 +40,7 @@ bool is_seen(const void* context, std::uint32_t triangle, float u, float v) {
   return !filter || filter->accept(filter->context, triangle, u, v);
 }
 
-// Whether a viewer who looks along a direction, that of the ray or the opposite one, sees from one end to the other.
+// Returns whether a viewer looking along the ray, or against it, sees from one end to the other.
 bool is_clear(const SceneRays& rays, const Ray& ray, const Vec3& direction, Backs backs) {
   const Look look = {&rays, direction, backs};
   const HitFilter seen = {is_seen, &look, rays.frame.filters_read_point};

@@ -50,7 +50,7 @@ void add_backs(const SceneRays& rays, std::uint32_t threads, std::vector<Patch>*
   }
 }
 
-// The same surfaces, all of them by their triangles.
+// Returns the surfaces with every one stored by its triangles.
 Surfaces without_grids(Surfaces surfaces) {
   surfaces.flat.clear(), surfaces.others.clear();
   for (std::uint32_t t = 0; t < surfaces.area.size(); ++t)
@@ -64,8 +64,8 @@ struct PatchLight {
   std::vector<Vec3d> all, reflected;
 };
 
-// What arrives at a receiver of a material from all patches and from outside, as irradiance / π. Negative x: it lies
-// inside a body.
+// Returns the light arriving at a receiver of a material from all patches and from outside, as irradiance / π. Negative
+// x: the receiver lies inside a body.
 Vec3d gather(const SceneRays& rays, const PatchLight& light, const Receiver& at, std::uint32_t material, bool on_grid,
              std::uint32_t seed) {
   const Outlook outlook = look_around(rays, at, kNodeRays, seed);

@@ -75,7 +75,7 @@ void enclose(const Scene& scene, FlatSurface* flat) {
     }
 }
 
-// Whether two parts lie in one plane and their rectangles touch.
+// Returns whether two parts lie in one plane and their rectangles touch.
 bool is_one(const FlatSurface& a, const FlatSurface& b) {
   if (a.material != b.material || dot(a.normal, b.normal) < kFlat) return false;
   const double size = std::max({a.width, a.height, b.width, b.height});

@@ -21,7 +21,7 @@ struct Range {
   float low, high;
 };
 
-// Of the values at a node and its neighbours.
+// Returns the range of the values at a node and its neighbours.
 Range range_around(const RadiosityNode* nodes, std::uint32_t columns, std::uint32_t rows, std::uint32_t column,
                    std::uint32_t row, int axis) {
   Range range = {nodes[row * columns + column].value[axis], nodes[row * columns + column].value[axis]};

@@ -13,7 +13,7 @@ constexpr double kClose = 0.4;  // of the distance up to which patches are near:
 
 double sum_of(const Vec3d& v) { return v.x + v.y + v.z; }
 
-// What all unshot light would add everywhere if it were spread evenly, with all its reflections.
+// Returns the radiance that all unshot light would add everywhere if spread evenly, with all its reflections.
 Vec3d ambient_estimate(const Exchange& e) {
   Vec3d unshot = {0, 0, 0}, reflected = {0, 0, 0}, result = {0, 0, 0};
   double area = 0;
