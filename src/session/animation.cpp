@@ -18,7 +18,7 @@ ByteSink sink_of(AnimationFile* a) {
           &a->writer};
 }
 
-// Frames last whole hundredths of a second, so they take turns: 3, 3, 4 for 30 per second.
+// Frames last whole hundredths of a second, so durations alternate: 3, 3, 4 for 30 per second.
 std::uint32_t centiseconds_of(std::uint32_t frame, double frames_per_second) {
   auto end = [=](std::uint32_t count) { return std::floor(100.0 * count / frames_per_second + 0.5); };
   return static_cast<std::uint32_t>(end(frame + 1) - end(frame));
@@ -37,7 +37,7 @@ Status start_encoder(AnimationFile* a) {
   std::snprintf(size, sizeof size, "%dx%d", a->width, a->height);
   std::snprintf(rate, sizeof rate, "%.9g", a->frames_per_second);
   const std::string video = encoder_file(*a, "video.mp4"), errors = encoder_file(*a, "errors");
-  // What browsers and phones play: H.264 with halved colour resolution, in the colours of HDTV.
+  // Plays in browsers and on phones: H.264 with halved colour resolution, in HDTV's colours.
   const char* words[] = {"ffmpeg",
                          "-y",
                          "-loglevel",
@@ -75,11 +75,11 @@ Status start_encoder(AnimationFile* a) {
   return failure("%.300s %s", program, error.text);
 }
 
-// The last line that the encoder wrote.
+// Returns the last line that the encoder wrote.
 std::string last_words(const AnimationFile& a) {
   platform::LoadedFile file;
   platform::FileError error;
-  if (!platform::load_file(encoder_file(a, "errors").c_str(), &file, &error)) return "it said nothing";
+  if (!platform::load_file(encoder_file(a, "errors").c_str(), &file, &error)) return "without an error message";
   std::string text(reinterpret_cast<const char*>(file.bytes), file.byte_count);
   platform::unload_file(&file);
   while (!text.empty() && (text.back() == '\n' || text.back() == '\r')) text.pop_back();
@@ -87,13 +87,13 @@ std::string last_words(const AnimationFile& a) {
 }
 
 Status encoder_failure(AnimationFile* a) {
-  SealPause pause;  // nothing comes after it
+  SealPause pause;  // nothing follows it
   platform::end_feed(&a->encoder);
   (void)platform::wait_for(&a->encoder);
   return failure("ffmpeg could not write %.200s: %.250s", a->path.c_str(), last_words(*a).c_str());
 }
 
-// Copies the video to its place, so that it appears there as a whole.
+// Copies the finished video to its place, so that it never appears there incomplete.
 Status fetch_video(AnimationFile* a) {
   platform::end_feed(&a->encoder);
   if (!platform::wait_for(&a->encoder)) return encoder_failure(a);

@@ -11,41 +11,41 @@
 namespace pocketray {
 
 enum class AnimationKind { none, gif, png, video };
-// By the ending of the path: .gif, .apng, .mp4.
+// Chosen by the path's suffix: .gif, .apng, .mp4.
 AnimationKind animation_kind(const std::string& path);
 
 // Chosen: from a slide every ten seconds to the fastest screens. GIF counts delays in hundredths of a second [GIF89a,
 // sec. 23], and browsers slow down delays of less than two.
 constexpr double kAnimationRateMin = 0.1, kAnimationRateMax = 240, kGifRateMax = 50;
-// Fails if the kind of file cannot play that many frames per second, if ffmpeg is missing, or it cannot encode pictures
-// of that size.
+// Fails if the kind of file cannot play that frame rate, if ffmpeg is missing, or if it cannot encode pictures of that
+// size.
 Status check_animation(AnimationKind kind, double frames_per_second, std::uint32_t width, std::uint32_t height);
 
-// Bytes of the frame arena, besides picture_bytes().
+// Bytes of the frame arena, in addition to picture_bytes().
 std::size_t animation_bytes(AnimationKind kind, const Settings& settings);
 
-// The file being written; it appears when end_animation() succeeds. Only beginning and ending take memory.
+// The file being written; it appears when end_animation() succeeds. Only beginning and ending allocate memory.
 struct AnimationFile {
   AnimationKind kind = AnimationKind::none;
   std::string path;
   double frames_per_second = 0;
-  std::uint32_t frame_count = 0;  // that were announced
+  std::uint32_t frame_count = 0;  // announced
   std::uint32_t written = 0;
   int width = 0, height = 0;
-  Array<std::uint8_t> pixels;  // R, G, B of a frame; room for it before it is cropped
+  Array<std::uint8_t> pixels;  // R, G, B of a frame, with room for the uncropped frame
   platform::FileWriter writer;
   GifWriter gif;
   AnimatedPng png;
   platform::Process encoder;
-  std::string folder;  // of the encoder's files
+  std::string folder;  // for the encoder's files
 
   AnimationFile() = default;
   AnimationFile(const AnimationFile&) = delete;
   AnimationFile& operator=(const AnimationFile&) = delete;
-  ~AnimationFile();  // drops an unfinished file
+  ~AnimationFile();  // discards an unfinished file
 };
 
-// `picture`: of every frame.
+// `picture` applies to every frame.
 Status begin_animation(const std::string& path, AnimationKind kind, double frames_per_second, std::uint32_t frame_count,
                        const PictureOptions& picture, Renderer* renderer, AnimationFile* animation);
 // Adds the picture that write_picture() would write.

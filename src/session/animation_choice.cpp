@@ -19,7 +19,7 @@ std::string name_of(const Scene& scene, std::uint32_t index) {
   return scene.animation_labels.count ? text_of(scene.animation_labels[index].name) : "";
 }
 
-// A number without sign; false for anything else.
+// Reads a number without sign; returns false for anything else.
 bool read_number(const std::string& text, std::uint32_t* number) {
   if (text.empty() || text.size() > 9 || text.find_first_not_of("0123456789") != std::string::npos) return false;
   *number = static_cast<std::uint32_t>(std::stoul(text));

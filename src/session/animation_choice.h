@@ -1,4 +1,4 @@
-// Which of a scene's animations plays.
+// Selects which of a scene's animations plays.
 #pragma once
 #include <string>
 #include <vector>
@@ -8,15 +8,15 @@
 
 namespace pocketray {
 
-// For --animation: those that do not drive the same thing, the default; no animation.
+// For --animation: all animations that drive different things, the default; no animation.
 constexpr const char *kAllAnimations = "all", *kNoAnimation = "none";
 
-// The index of the animation that --animation asks for by name or number, kNone for none of them; empty: the default.
+// Finds the animation that --animation names or numbers, kNone for "none"; empty: the default.
 Status find_animation(const Scene& scene, const std::string& asked, std::uint32_t* index);
 
-// "animation 0 'Walk', 1.5 s: node 'Hips' (rotation)"; for kNone and the combination of several, their names alone.
+// "animation 0 'Walk', 1.5 s: node 'Hips' (rotation)"; for kNone and combinations, only their names.
 std::string describe_animation(const Scene& scene, std::uint32_t index);
-// The indices of animations with a number of their own, in the order of their numbers.
+// Returns the indices of animations with a number of their own, in the order of their numbers.
 std::vector<std::uint32_t> numbered_animations(const Scene& scene);
 
 }  // namespace pocketray

@@ -58,7 +58,7 @@ AovPicture color_aov(Aov aov, const PixelBox& box, Renderer* renderer) {
   for_each_pixel(box, renderer, [&](Vec3* p) { *p = color_of(aov, *p, most, range); });
   renderer->exposure = 1;
   AovPicture picture;
-  const int width = box.height >= 3 * kLegendHeight ? box.width : 0;  // it hides a third of the picture at most
+  const int width = box.height >= 3 * kLegendHeight ? box.width : 0;  // it hides at most a third of the picture
   char high[24];
   std::snprintf(high, sizeof high, "%.6g", static_cast<double>(most));
   if (aov == Aov::cost) {
@@ -72,9 +72,9 @@ AovPicture color_aov(Aov aov, const PixelBox& box, Renderer* renderer) {
                   "  normal: x, y, z as red, green, blue, each dark at -1, bright at 1");
   }
   if (aov == Aov::triangle) {
-    picture.legend = make_text_legend("triangle: a colour each", width);
+    picture.legend = make_text_legend("triangle: one colour each", width);
     std::snprintf(picture.told, sizeof picture.told,
-                  "  triangle: a colour each; .pfm and .exr have their numbers, plus 1");
+                  "  triangle: one colour each; .pfm and .exr have their numbers, plus 1");
   }
   if (aov == Aov::position) {
     picture.legend = make_text_legend("position: x, y, z as red, green, blue", width);

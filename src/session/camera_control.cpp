@@ -41,7 +41,7 @@ CameraControl make_camera_control(const Camera& camera, const Box& bounds) {
   control.scene = control.home = control.camera = camera;
   float size = is_empty(bounds) ? 0 : length(extent(bounds));
   control.size = size > 0 ? size : length(camera.target - camera.eye);
-  // A file's camera has only a direction, but orbiting needs a target: the point as far away as the scene's centre.
+  // A file's camera has only a direction, but orbiting needs a target: the point at the distance of the scene's centre.
   Vec3 forward = normalize(camera.target - camera.eye);
   if (!is_empty(bounds)) {
     float distance = dot(center(bounds) - camera.eye, forward);
@@ -60,7 +60,7 @@ bool move_camera(CameraControl* control, const CameraInput& in, float seconds) {
   if (control->mode == CameraMode::orbit) {
     Vec3 view = turn(c.target - c.eye, up, in.right * quarter, -in.up * quarter);
     float zoom = static_cast<float>(det_exp(-static_cast<double>(in.forward) * static_cast<double>(seconds)));
-    // Not closer than a thousandth of the scene, from where turning about the target still turns the view.
+    // No closer than a thousandth of the scene, where turning about the target still turns the view.
     if (length(view) * zoom > control->size * 1e-3f) view = view * zoom;
     c.eye = c.target - view;
     c.vertical_extent *= c.projection == Projection::orthographic ? zoom : 1;
@@ -79,7 +79,7 @@ bool move_camera(CameraControl* control, const CameraInput& in, float seconds) {
 Camera orbited_camera(const CameraControl& control, float degrees) {
   CameraControl turned = control;
   reset_camera(&turned);
-  // A camera that looks up or down may lean: the scene turns about the vertical all the same.
+  // A camera that looks up or down may lean: the scene turns about the vertical anyway.
   Camera& camera = turned.camera;
   const Vec3 up = normalize(camera.up);
   if (up.y > kLeanMax && up.y < 1) {

@@ -11,7 +11,7 @@
 namespace pocketray {
 namespace {
 
-// What materials read of a run of texels.
+// Channels of a run of texels that materials read.
 struct Uses {
   bool color = false, alpha = false, normal = false, green_blue = false, red = false, grain = false;
 };
@@ -25,7 +25,7 @@ Channels channels_of(std::uint32_t texel) {
   return channels;
 }
 
-// By the first texel of each run: textures may share one.
+// Keyed by the first texel of each run: textures may share one.
 std::map<std::uint32_t, Uses> find_uses(const Scene& scene) {
   std::map<std::uint32_t, Uses> uses;
   auto note = [&](const TextureUse& use, bool Uses::*what) {
@@ -66,7 +66,7 @@ TexelFormat choose_format(const Uses& uses, const std::uint32_t* texels, std::ui
   return uses.red ? TexelFormat::red4 : TexelFormat::exact;
 }
 
-// Whether a format stores a channel; blue of normals follows from the others.
+// Returns whether a format stores a channel; a normal's blue follows from the others.
 bool stores(TexelFormat format, int channel) {
   switch (format) {
     case TexelFormat::exact:
@@ -84,7 +84,7 @@ bool stores(TexelFormat format, int channel) {
   return false;
 }
 
-// Sum of the squared errors of a level's stored channels; adds their number to *count.
+// Returns the sum of squared errors over a level's stored channels; adds their number to *count.
 double level_error(TexelFormat format, const std::uint32_t* texels, std::uint32_t width, std::uint32_t height,
                    const std::uint32_t* blocks, std::uint64_t* count) {
   CHECK(format != TexelFormat::exact);

@@ -16,7 +16,7 @@ namespace pocketray {
 #ifdef POCKETRAY_HAVE_EXR
 namespace {
 
-// The library writes the table of chunks last, before them, and pipes cannot go back: the file is made in memory.
+// The library writes the table of chunks last, before the chunks, and pipes cannot seek: the file is made in memory.
 using File = std::vector<std::uint8_t>;
 
 std::int64_t write_at(exr_const_context_t, void* user, const void* bytes, std::uint64_t count, std::uint64_t offset,
@@ -84,7 +84,7 @@ Status encode_exr(const float* values, int width, int height, std::size_t line_v
   File bytes;
   exr_context_initializer_t start = EXR_DEFAULT_CONTEXT_INITIALIZER;
   start.user_data = &bytes, start.write_fn = write_at;
-  start.error_handler_fn = [](exr_const_context_t, exr_result_t, const char*) {};  // the result says it
+  start.error_handler_fn = [](exr_const_context_t, exr_result_t, const char*) {};  // the result reports it
   exr_context_t file = nullptr;
   const Pixels pixels = {values, width, height, line_values};
   exr_result_t result = exr_start_write(&file, "picture", EXR_WRITE_FILE_DIRECTLY, &start);

@@ -10,8 +10,8 @@
 namespace pocketray {
 namespace {
 
-// Derived: five names of 64 bytes fit into the 400 of the message, which shows as much of the wanted one. Longer names
-// would make comparing, which is quadratic, dear.
+// Derived: five names of 64 bytes fit into the message's 400, which shows as much of the wanted one. Longer names would
+// make comparing, which is quadratic, expensive.
 constexpr std::size_t kNamesShown = 5, kNameBytesCompared = 64;
 
 std::string lower_case(const std::string& text) {
@@ -20,7 +20,7 @@ std::string lower_case(const std::string& text) {
   return lower;
 }
 
-// Insertions, deletions and replacements from one to the other [Wagner and Fischer 1974].
+// Insertions, deletions and replacements between two texts [Wagner and Fischer 1974].
 std::size_t edit_distance(const std::string& a, const std::string& b) {
   std::vector<std::size_t> row(b.size() + 1);
   std::iota(row.begin(), row.end(), std::size_t(0));
@@ -36,7 +36,7 @@ std::size_t edit_distance(const std::string& a, const std::string& b) {
   return row[b.size()];
 }
 
-// How unlike two names are; one within the other is near.
+// Dissimilarity of two names; 0 if `name` contains `wanted`.
 std::size_t unlikeness(const std::string& wanted, const std::string& name) {
   const std::string a = lower_case(wanted), b = lower_case(name);
   return a.empty() || b.find(a) == std::string::npos ? edit_distance(a, b) : 0;

@@ -1,4 +1,4 @@
-// A camera on one part of a model.
+// Aims a camera at one part of a model.
 #pragma once
 #include <string>
 
@@ -6,11 +6,11 @@
 
 namespace pocketray {
 
-// The bounds of the part of that name. Fails, and lists the nearest names, if there is none.
+// Finds the bounds of the named part. Fails, listing the nearest names, if there is none.
 Status find_part(const SceneSource& source, const std::string& scene, const std::string& name, Box* bounds);
 
-// A perspective camera that looks at the part from where `camera` looks at the scene, and shows all of it. `fov`: the
-// vertical field of view in radians.
+// Returns a perspective camera that looks at the part from the direction in which `camera` looks at the scene, and
+// shows all of it. `fov`: the vertical field of view in radians.
 Camera focused_camera(const Camera& camera, const Box& bounds, float aspect, double fov);
 
 }  // namespace pocketray

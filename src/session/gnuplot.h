@@ -5,7 +5,7 @@
 
 namespace pocketray {
 
-// Runs the scripts one after another in their folder. False if gnuplot is missing or failed.
+// Runs the scripts one after another in their folder. Returns false if gnuplot is missing or failed.
 bool run_gnuplot(const std::string& folder, const std::vector<std::string>& scripts);
 
 }  // namespace pocketray

@@ -10,16 +10,16 @@ namespace pocketray {
 
 struct HeapScene {
   Scene scene;
-  std::string warning;               // the importer's, one line; empty: none
+  std::string warning;               // of the importer, one line; empty: none
   std::vector<std::uint8_t> memory;  // of a built-in scene
-  std::vector<std::string> files;    // that a model was read from
+  std::vector<std::string> files;    // that the model was read from
 #ifdef POCKETRAY_HAVE_IMPORT
   ImportedScene imported;
 #endif
 };
 
 // Options for importing models; see import/import.h. Chosen: 512 texels are more than a row of a 320×240 picture shows.
-// Edges sharper than 40° stay sharp: those of a box and of a cylinder of eight sides.
+// Edges sharper than 40° stay sharp: those of a box and of an eight-sided cylinder.
 struct ModelOptions {
   std::uint32_t texture_side_max = 512;
   bool mip_maps = true;

@@ -6,8 +6,8 @@ namespace pocketray {
 
 extern std::atomic<bool> interrupted;
 
-// Catches SIGINT, SIGTERM and SIGHUP from now on; a second one ends the program at once. SIGPIPE, where nobody reads
-// what is printed any more, sets the flag too.
+// Catches SIGINT, SIGTERM and SIGHUP from now on; a second one ends the program at once. SIGPIPE, raised when nobody
+// reads the output any more, also sets the flag.
 void catch_interrupts();
 
 }  // namespace pocketray

@@ -16,7 +16,7 @@ bool has_jpeg() { return true; }
 
 void encode_jpeg(const std::uint8_t* rgb, int width, int height, const ByteSink& sink) {
   constexpr int kQuality =
-      95;  // chosen: above 90, stb_image_write keeps the colours' resolution; 100 gives larger files
+      95;  // chosen: above 90, stb_image_write keeps the full colour resolution; 100 gives larger files
   CHECK(rgb != nullptr && sink.write != nullptr);
   CHECK(width > 0 && height > 0);
   auto write = [](void* context, void* bytes, int count) {

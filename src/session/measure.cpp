@@ -20,7 +20,7 @@ Status render_once(Renderer* renderer, std::uint32_t frame, double* ns_per_pixel
   return success();
 }
 
-// The same, tracing what may have changed since the last frame.
+// Renders the next frame, tracing only what may have changed since the last.
 Status render_next(Renderer* renderer, std::uint32_t frame, double* ns_per_pixel) {
   double seconds = frame / static_cast<double>(renderer->scene.info.frames_per_second);
   RETURN_IF_ERROR(render_coherent(renderer, seconds, &interrupted));
@@ -29,7 +29,7 @@ Status render_next(Renderer* renderer, std::uint32_t frame, double* ns_per_pixel
 }
 
 Status measure_price(Renderer* renderer, Effect effect, double* price) {
-  constexpr int kRounds = 3;  // chosen: the fewest with a median that one disturbed frame does not spoil
+  constexpr int kRounds = 3;  // chosen: the minimum whose median one disturbed frame does not spoil
   EffectMask mask = renderer->effects.mask;
   CHECK(has(mask, effect));
   std::uint32_t samples = renderer->settings.samples_per_pixel;
@@ -133,7 +133,7 @@ Status measure_prices(Renderer* renderer, Measurement* m) {
 
 std::vector<Span> sparse_spans(const Settings& settings, double fraction, bool patches) {
   CHECK(fraction > 0 && fraction <= 1);
-  constexpr std::uint32_t kSeed = 1;  // any
+  constexpr std::uint32_t kSeed = 1;  // arbitrary
   const std::uint32_t side = patches ? kPatchSide : 1, offset = side / 3;
   const std::uint32_t cells = (settings.width + offset) / side + 1;
   std::vector<bool> chosen(cells);

@@ -4,7 +4,7 @@
 
 namespace pocketray {
 
-// Text with control characters in names of files and peers made harmless, for a terminal.
+// Returns the text with control characters, as in names of files and peers, made harmless for a terminal.
 std::string shown(std::string text);
 // Prints "pocketray: text", shown().
 void print_note(const std::string& text);

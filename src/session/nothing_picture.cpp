@@ -16,7 +16,7 @@ constexpr std::uint32_t kRaysMax = 1000;  // chosen, as for black pictures
 
 enum class Seen { nothing, surface, transparent, culled };
 
-// Pixels of a grid, at most kRaysMax.
+// Visits the pixels of a grid, at most kRaysMax.
 template <class Visit>
 bool for_each_place(const Settings& settings, Visit visit) {
   std::uint32_t step = 1;
@@ -34,7 +34,7 @@ bool is_transparent(const FrameData& frame, const Material& m, const Hit& hit) {
   return m.alpha_mode == AlphaMode::mask ? alpha < m.alpha_cutoff : !(alpha > 0);
 }
 
-// The first surface behind a pixel's centre that is visible, else the last one that is not.
+// Finds the first visible surface behind a pixel's centre, otherwise the last invisible one.
 Seen look(const FrameData& frame, std::uint32_t column, std::uint32_t row, std::uint32_t* material) {
   Ray ray = camera_ray(frame.camera, static_cast<float>(column) + 0.5f, static_cast<float>(row) + 0.5f);
   Seen seen = Seen::nothing;
@@ -53,7 +53,7 @@ Seen look(const FrameData& frame, std::uint32_t column, std::uint32_t row, std::
   return seen;
 }
 
-// The part of the picture that the scene's corners span, in pixels, and how many of them are before the camera.
+// Bounds of the scene's corners in the picture, in pixels, and how many of them are in front of the camera.
 struct Extent {
   double low[2] = {1e300, 1e300}, high[2] = {-1e300, -1e300};
   std::uint32_t before = 0, all = 0;
@@ -93,8 +93,8 @@ const char* describe_place(const FrameData& frame) {
                                                          extent.low[1] > static_cast<double>(frame.camera.height));
   if (is_beside) return "all of it is beside the picture; aim with --camera, or leave --camera out to frame the model";
   if (extent.high[0] - extent.low[0] < 1 || extent.high[1] - extent.low[1] < 1)
-    return "it is smaller than a pixel; bring the camera closer, or ask for a larger --size";
-  return "no ray through a pixel's centre meets it; move the camera, or ask for a larger --size";
+    return "it is smaller than a pixel; bring the camera closer, or use a larger --size";
+  return "no ray through a pixel's centre meets it; move the camera, or use a larger --size";
 }
 
 void describe_material(const Renderer& renderer, const std::vector<std::string>& names, std::uint32_t index, Seen seen,

@@ -35,15 +35,15 @@ Status set_pace(const CommonOptions& o, Renderer* renderer) {
   return success();
 }
 
-// What stands in for the light that a scene does not have, and what changes it.
+// Returns the default light added to a scene without light, and the options that change it.
 const char* default_light_note(const Scene& scene, LightChoice light) {
   constexpr const char* kAdded[] = {
       "adding a key and a fill light; --light and --environment change that",
       "adding a sun",
-      "adding ambient light alone",
-      "adding a key and a fill light in a studio; --environment none or --background leaves the studio out",
+      "adding only ambient light",
+      "adding a key and a fill light in a studio; --environment none or --background omits the studio",
       "adding a sun over a studio",
-      "adding the light of a studio alone",
+      "adding only the light of a studio",
   };
   return kAdded[static_cast<int>(light) + (scene.environment_info.count ? 3 : 0)];
 }

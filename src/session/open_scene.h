@@ -8,7 +8,7 @@
 
 namespace pocketray {
 
-// A scene opened for rendering; owns everything the renderer refers to.
+// A scene opened for rendering; owns everything that the renderer refers to.
 struct OpenScene {
   Renderer renderer;
   SceneSource source;
@@ -22,21 +22,21 @@ struct OpenScene {
 
 // A command's additions to opening a scene.
 struct OpenHooks {
-  std::function<OutputNeed(const Settings&)> output_bytes;  // as plan_memory() takes it
+  std::function<OutputNeed(const Settings&)> output_bytes;  // as passed to plan_memory()
   std::function<Status(const std::string& name, Renderer*, SceneSource*, SceneStorage*)> load = load_scene;
   std::function<Status(const SceneSource&, Renderer*)> loaded = {};  // between loading and planning
   std::function<Status(Renderer*, const SceneStorage&, const OutputNeed& output)> plan = plan_renderer;
 };
 
-// Fails if the system cannot give a block of `wanted` bytes: it would end the program as soon as it uses them.
-// `free_bytes`: as platform::free_memory() has it.
+// Fails if the system cannot provide a block of `wanted` bytes: using it would make the system kill the program.
+// `free_bytes`: from platform::free_memory().
 Status check_memory(std::size_t wanted, std::size_t free_bytes);
 // Reads the options, loads the scene and plans it. If memory is short, fails with opened->source.bytes_wanted set.
 Status open_scene(const CommonOptions& options, const OpenHooks& hooks, OpenScene* opened);
 // Builds the accelerator and starts the threads, ready for render_frame().
 Status start_scene(OpenScene* opened, const CommonOptions& options);
 
-// The bounds of what the camera turns around.
+// Bounds of what the camera turns around.
 inline const Box& subject_of(const OpenScene& opened) {
   return is_empty(opened.source.focus) ? opened.renderer.accel.bounds : opened.source.focus;
 }
@@ -44,7 +44,7 @@ inline const Box& subject_of(const OpenScene& opened) {
 // Multiplies *exposure; fails if the product is out of range.
 Status change_exposure(float factor, float* exposure);
 
-// Prints the scene's warning and the defaults it was given, one line each, on stderr.
+// Prints the scene's warning and the defaults that were added, one line each, on stderr.
 void print_notes(const OpenScene& opened);
 
 }  // namespace pocketray

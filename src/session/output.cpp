@@ -123,7 +123,7 @@ Status write_file(const std::string& path, const std::string& bytes) {
 int finish_printing(int exit_status) {
   bool arrived = std::fflush(stdout) == 0 && std::ferror(stdout) == 0;
   if (arrived || exit_status != kExitDone) return exit_status;  // an earlier failure has been reported
-  // The data have arrived, or the reader has read enough; the rest is nobody's.
+  // The data has arrived, or the reader has read enough; the rest does not matter.
   if (platform::is_output_for_data() || platform::is_output_closed()) return exit_status;
   return report(failure("could not write all output to standard output: is it full or closed?"));
 }

@@ -41,7 +41,7 @@ void crop_rows(const PixelBox& box, std::size_t pixel_bytes, std::size_t row_byt
     std::memmove(pixels + static_cast<std::size_t>(y) * count, from + static_cast<std::size_t>(y) * row_bytes, count);
 }
 
-// Rows of the whole picture, of which those outside the box are not written; then the box alone.
+// Packs rows of the whole picture, skips those outside the box, then crops to the box.
 void pack(const PictureOptions& o, const Renderer& renderer, const PixelFormat& format, Rotation rotation, bool dither,
           std::uint8_t* pixels, int row_bytes) {
   const int width = static_cast<int>(renderer.settings.width), height = static_cast<int>(renderer.settings.height);
@@ -62,7 +62,7 @@ void pack(const PictureOptions& o, const Renderer& renderer, const PixelFormat& 
 }
 
 Status encode(Kind kind, const PictureOptions& o, Renderer* renderer, const ByteSink& sink) {
-  CHECK(kind != Kind::unknown);  // check_picture_path() has been asked
+  CHECK(kind != Kind::unknown);  // check_picture_path() was called
   int width = static_cast<int>(renderer->settings.width), height = static_cast<int>(renderer->settings.height);
   const PixelBox box = box_to_write(o, renderer->settings);
   if (kind == Kind::pfm || kind == Kind::exr) {

@@ -1,5 +1,5 @@
-// A finished frame as a file: PNG, PPM (displayed levels), PFM or OpenEXR (linear radiance) or the bytes a framebuffer
-// would hold.
+// Writes a finished frame as a file: PNG, PPM (displayed levels), PFM or OpenEXR (linear radiance) or the bytes of a
+// framebuffer.
 #pragma once
 #include <string>
 
@@ -11,8 +11,8 @@
 namespace pocketray {
 
 struct PictureOptions {
-  const char* kind = nullptr;        // ".png": what to write, whatever the path's ending; null: what that says
-  PixelFormat raw_format = kRgb565;  // of .raw files
+  const char* kind = nullptr;        // ".png": the kind to write, whatever the path's suffix; null: by the suffix
+  PixelFormat raw_format = kRgb565;  // for .raw files
   Rotation rotation = Rotation::none;
   bool dither = false;
   PixelBox crop;                   // the pixels to write, unless they are rotated; width 0: all
@@ -24,22 +24,22 @@ struct PictureOptions {
   PixelFormat packed_format;
 };
 
-// The pixels of a picture of the settings' size that are written.
+// Returns the pixels to write of a picture of the settings' size.
 PixelBox box_to_write(const PictureOptions& options, const Settings& settings);
 
 // Bytes needed in the frame arena to write any format.
 std::size_t picture_bytes(const Settings& settings);
 
-// Fails unless the path ends in .png, .ppm, .pfm, .raw or, if this build has JPEG, .jpg or .jpeg, or is such an ending.
+// Fails unless the path ends in .png, .ppm, .pfm, .raw or, if this build has JPEG, .jpg or .jpeg, or is such a suffix.
 Status check_picture_path(const std::string& path);
-// Whether pictures of that name have linear radiance, or values, instead of displayed levels.
+// Returns whether pictures with that name hold linear radiance, or values, instead of displayed levels.
 bool stores_values(const std::string& path);
 
-// The picture in the options as rows of R, G and B, without padding. `rgb` has room for the whole picture, even if it
+// Returns the options' picture as rows of R, G and B, without padding. `rgb` has room for the whole picture, even if it
 // is cropped.
 void picture_levels(const PictureOptions& options, const Renderer& renderer, std::uint8_t* rgb);
 
-// Writes the picture in the options, else renderer->image. Replaces the file atomically.
+// Writes the options' picture, otherwise renderer->image. Replaces the file atomically.
 Status write_picture(const char* path, const PictureOptions& options, Renderer* renderer);
 
 }  // namespace pocketray

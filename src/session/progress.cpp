@@ -21,10 +21,10 @@ Progress start_progress(const char* what, std::uint64_t total) {
 
 double seconds_left(TimeEstimate* e, double elapsed, double share) {
   CHECK(e != nullptr && share > 0 && share <= 1 && elapsed >= 0);
-  // Chosen: speeds that grow or fall with the square root of time, whose estimates are off by two and more, are not
-  // steady.
+  // Chosen: speeds that grow or fall with the square root of time, whose estimates are off by a factor of two or more,
+  // do not count as steady.
   constexpr double kWindow = 1.5, kSteady = 1.2;
-  constexpr double kShareMin = 1.0 / 32;  // chosen: less of the work does not speak for the rest
+  constexpr double kShareMin = 1.0 / 32;  // chosen: less of the work is not representative
   if (elapsed >= kWindow * e->since_seconds && elapsed > e->since_seconds && share >= e->since_share) {
     const double speed = (share - e->since_share) / (elapsed - e->since_seconds), before = e->speed;
     e->is_steady = speed > 0 && speed <= kSteady * before && before <= kSteady * speed;
@@ -35,7 +35,7 @@ double seconds_left(TimeEstimate* e, double elapsed, double share) {
 
 void show_progress(Progress* p, std::uint64_t done) {
   constexpr std::uint64_t kSecond = 1000000000;
-  // Chosen: ten times a second looks continuous, a line every 10 s keeps logs short, and what takes less than a second
+  // Chosen: ten times per second looks continuous, a line every 10 s keeps logs short, and work of less than a second
   // needs none.
   std::uint64_t now = clock_ns(), interval = p->terminal ? kSecond / 10 : 10 * kSecond;
   if (done == 0 || p->total == 0) return;

@@ -6,15 +6,15 @@
 
 namespace pocketray {
 
-// Predicts the remaining time of work whose speed may change, as a solver's that first refines its problem.
+// Predicts the remaining time of work whose speed may change, such as a solver that refines its problem first.
 struct TimeEstimate {
-  double since_seconds = 0, since_share = 0;  // where the present window of time begins
-  double speed = 0;                           // shares per second in the last window
+  double since_seconds = 0, since_share = 0;  // start of the current time window
+  double speed = 0;                           // share per second in the last window
   bool is_steady = false;
 };
-// Returns the remaining seconds after `elapsed` seconds and a share in (0, 1] of the work, or a negative number while
-// the speed still changes by more than a fifth from one window to the next. Windows grow with the elapsed time. Call it
-// often.
+// Returns the remaining seconds after `elapsed` seconds and a share in (0, 1] of the work, or
+// a negative number while the speed still changes by more than a fifth between windows.
+// Windows grow with the elapsed time. Call it often.
 double seconds_left(TimeEstimate* estimate, double elapsed, double share);
 
 struct Progress {
@@ -26,7 +26,7 @@ struct Progress {
 };
 
 Progress start_progress(const char* what, std::uint64_t total);
-// Call as often as you like; prints at most ten times a second (terminal) or every ten seconds.
+// Call as often as you like; prints at most ten times per second (terminal) or every ten seconds.
 void show_progress(Progress* progress, std::uint64_t done);
 // Clears the bar.
 void end_progress(Progress* progress);

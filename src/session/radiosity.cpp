@@ -36,12 +36,12 @@ struct Block {
   ~Block() { give_block_back(bytes); }
 };
 
-// A renderer of the scene with a picture of one pixel, for its lights and its accelerator.
+// Makes a renderer of the scene with a one-pixel picture, for its lights and its accelerator.
 Status prepare(const Scene& scene, Renderer* renderer, Block* block) {
   Settings settings;
   settings.width = settings.height = 1, settings.threads = 1;
   settings.indirect = IndirectChoice::none;
-  // Chosen: what `render` takes by default; doubled until the scene fits.
+  // Chosen: the default of `render`; doubled until the scene fits.
   for (std::size_t bytes = std::size_t(64) << 20;; bytes *= 2) {
     block->bytes = take_block(bytes);
     if (!block->bytes) return failure("not enough memory to solve radiosity: bake a smaller model");
@@ -69,7 +69,7 @@ Status solve(const std::string& name, std::uint32_t threads, Scene* scene, Radio
   RETURN_IF_ERROR(prepare(*scene, &renderer, &block));
   RadiosityOptions options;
   options.threads = threads;
-  constexpr std::uint64_t kSteps = 1000;  // chosen: finer than the percent shown
+  constexpr std::uint64_t kSteps = 1000;  // chosen: finer than the displayed percentage
   Progress progress = start_progress("solving radiosity", kSteps);
   std::atomic<bool> showing{false};
   Status status = solve_radiosity(

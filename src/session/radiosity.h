@@ -12,11 +12,11 @@ struct SolvedRadiosity {
   std::string summary;  // "1234 patches, 5678 shots, 0.01 % unshot"
 };
 
-// Solves the light between the surfaces of a scene at time 0 and lets the scene refer to it. Shows progress on stderr.
+// Solves the light between the surfaces of a scene at time 0 and makes the scene refer to it. Shows progress on stderr.
 // Fails if the scene has no light of its own, on Ctrl-C, and in builds without the solver.
 Status solve_scene(const std::string& name, std::uint32_t threads, Scene* scene, SolvedRadiosity* solved);
 
-// For a scene loaded into the renderer that asks for radiosity and stores none: solves it into the scene arena.
+// If a loaded scene asks for radiosity but stores none, solves it into the scene arena.
 Status solve_if_requested(const std::string& name, Renderer* renderer, SceneSource* source, SceneStorage* storage);
 
 }  // namespace pocketray

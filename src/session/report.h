@@ -23,12 +23,12 @@ void print_memory(const MemoryPlan& plan);
 Json effects_json(const EffectPlan& plan);
 Json memory_json(const MemoryPlan& plan);
 
-// ", emulating pi-zero: 550 times slower", or nothing.
+// ", emulating pi-zero: 550 times slower", or empty.
 std::string emulation_text(const Pace& pace);
 
 // Groups digits: "12 345 678".
 std::string grouped(std::uint64_t value);
-// The same with a noun: "1 light", "12 345 lights".
+// Groups digits and adds a noun: "1 light", "12 345 lights".
 std::string counted(std::uint64_t value, const char* noun);
 
 }  // namespace pocketray

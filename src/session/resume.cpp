@@ -27,10 +27,10 @@ bool is_kept(const FrameJournal& journal) { return journal.writer.descriptor >= 
 
 void close(FrameJournal* journal) {
   platform::FileError error;
-  if (is_kept(*journal)) (void)platform::close_writer(&journal->writer, &error);  // what got lost only costs time
+  if (is_kept(*journal)) (void)platform::close_writer(&journal->writer, &error);  // lost lines only cost time
 }
 
-// Whether nothing has that name, or a journal, whatever its pictures show.
+// Returns whether the name is unused or a journal's, whatever its pictures show.
 bool is_free(const std::string& path) {
   if (!platform::is_plain_or_absent(path.c_str())) return false;
   if (platform::file_stamp(path.c_str()) == 0) return true;
@@ -61,10 +61,10 @@ Status read_journal(const std::string& path, const std::string& identity, std::v
     return failure("%.300s is not a list of finished frames: delete it, or drop --resume", path.c_str());
   if (text.compare(0, head.size(), head) != 0)
     return failure(
-        "--resume: %.300s is of pictures with another scene, version or options: drop --resume to render all",
+        "--resume: %.300s belongs to pictures with another scene, version or options: drop --resume to render all",
         path.c_str());
   const char* at = text.c_str() + head.size();
-  // A number without its line's end may have been cut off.
+  // A number without a line end may have been truncated.
   for (std::size_t digits; (digits = std::strspn(at, "0123456789")) > 0 && digits < 8 && at[digits] == '\n';
        at += digits + 1)
     finished->push_back(static_cast<std::uint32_t>(std::strtoul(at, nullptr, 10)));

@@ -1,4 +1,4 @@
-// Identifies a scene by content, wherever it came from: for servers and for its front's files.
+// Identifies a scene by content, wherever it came from: for servers and for the files of its front.
 #pragma once
 #include "scene/content_hash.h"
 #include "session/source.h"

@@ -16,7 +16,7 @@
 namespace pocketray {
 namespace {
 
-// Names the option in errors; validate_settings() tests the same limits with the library's names.
+// Names the option in errors; validate_settings() checks the same limits under the library's names.
 Status read_setting(const SettingRow& row, const SettingOption& option, Quality* quality) {
   const std::string name = std::string("--") + row.name;
   double value = row.field.kind == SettingKind::count ? double(option.count) : double(option.real);
@@ -30,7 +30,7 @@ Status read_setting(const SettingRow& row, const SettingOption& option, Quality*
   return success();
 }
 
-// Reads numbers separated by spaces or commas; false unless there are exactly `count` finite ones.
+// Reads numbers separated by spaces or commas; returns false unless there are exactly `count` finite ones.
 bool read_numbers(const std::string& text, double* values, int count) {
   const char* at = text.c_str();
   for (int i = 0; i < count; ++i) {
@@ -73,7 +73,7 @@ SettingOption& SettingOptions::operator[](const char* name) {
 
 std::size_t memory_to_take(std::size_t free_bytes) {
   if (free_bytes == 0) return static_cast<std::size_t>(kMemoryBytesMax);
-  // For the program's own heap, stacks and screen. Chosen: with an eighth of a small system alone, the system ends it.
+  // For the program's own heap, stacks and screen. Chosen: an eighth of a small system alone gets the program killed.
   constexpr std::size_t kLeastLeft = 4 << 20;
   std::size_t left = std::max(free_bytes / 8, kLeastLeft);
   std::size_t bytes = free_bytes > left ? (free_bytes - left) >> 20 << 20 : 0;
@@ -211,7 +211,7 @@ Status parse_camera(const std::string& text, Camera* camera, const SceneOrigin& 
 
 namespace {
 
-// "#rrggbb", levels of sRGB, or "r,g,b", radiance.
+// Parses "#rrggbb", sRGB levels, or "r,g,b", radiance.
 Status parse_background(const std::string& text, Vec3* radiance) {
   float v[3];
   if (text[0] == '#' && text.size() == 7 && text.find_first_not_of("0123456789abcdefABCDEF", 1) == std::string::npos)

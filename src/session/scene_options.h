@@ -14,7 +14,7 @@
 
 namespace pocketray {
 
-// The value of a setting's option, in the member for the setting's kind.
+// Value of a setting's option, in the member for the setting's kind.
 struct SettingOption {
   std::uint32_t count = 0;
   float real = 0;
@@ -27,7 +27,7 @@ struct SettingOptions {
   SettingOption& operator[](const char* name);  // by name, which must exist
 };
 
-// For --environment: leaves the scene's out.
+// For --environment: removes the scene's environment.
 constexpr const char* kNoEnvironment = "none";
 
 struct CommonOptions {
@@ -39,7 +39,7 @@ struct CommonOptions {
   std::string animation;                       // animation_choice.h; empty: the default
   ReadingChoice reading;
   std::uint32_t threads = 0, camera_index = 0;
-  // What the command writes beside --json. None of it may replace a file that the scene is read from.
+  // Files that the command writes besides --json. None may replace a file that the scene is read from.
   std::vector<NamedFile> outputs;
   std::string output_folder;
   SettingOptions settings;
@@ -47,20 +47,20 @@ struct CommonOptions {
   std::uint32_t coherence_table = Settings().coherence_table;
 };
 
-// The largest block to take from a system with that many free bytes, which leaves it an eighth
-// and at least 4 MiB; 0: unknown.
+// Returns the largest block to take from a system with that many free bytes: leaves it an eighth and at least 4 MiB; 0:
+// unknown.
 std::size_t memory_to_take(std::size_t free_bytes);
-// Parses the options into settings. The memory is what --memory says, else the device's or 64 MiB if the system has it.
+// Parses the options into settings. Memory is that of --memory, otherwise the device's, or 64 MiB if the system has it.
 Status read_settings(const CommonOptions& options, Settings* settings);
-// Picture size: from --size, else the emulated device's screen as held, else 320 × 240.
+// Picture size: --size, otherwise the emulated device's screen as held, otherwise 320 × 240.
 Status picture_size(const CommonOptions& options, std::uint32_t* width, std::uint32_t* height);
 // Finds the profile named by --device or --emulate; succeeds with null if neither is given.
 Status find_device(const CommonOptions& options, const platform::Device** device);
 
-// Number of tracing threads: `asked`, or one per core if that is 0. Fails if more are asked for than kThreadCountMax.
+// Number of tracing threads: `asked`, or one per core if that is 0. Fails if it exceeds kThreadCountMax.
 Status choose_thread_count(std::uint32_t asked, unsigned core_count, std::uint32_t* count);
 
-// Parses --isa; empty: the best of this CPU.
+// Parses --isa; empty: the CPU's best.
 Status parse_coherence(const std::string& text, CoherenceMode* mode);  // on, off or auto
 Status parse_isa(const std::string& text, Isa* isa);
 // Finds an accelerator by name; null for "auto".
@@ -68,11 +68,11 @@ const AccelInfo* find_accel(const std::string& name);
 // "WIDTHxHEIGHT"; "24M", "512K", "1G" or bytes; "ex,ey,ez tx,ty,tz ux,uy,uz VFOV" (degrees).
 Status parse_size(const std::string& text, std::uint32_t* width, std::uint32_t* height);
 Status parse_bytes(const std::string& text, std::size_t* bytes, const char* option = "--memory");
-// `origin`: the scene's place in the coordinates of the text.
+// `origin`: the scene's origin in the coordinates of the text.
 Status parse_camera(const std::string& text, Camera* camera, const SceneOrigin& origin = {0, 0, 0});
 // Parses --background, --light and --fov.
 Status parse_look(const CommonOptions& options, Look* look);
 enum class ExposureChoice { as_scene, measured, fixed };
-// Parses --exposure: whether to measure it, as the scene asks, always or never, and the factor on that exposure.
+// Parses --exposure: whether to measure it (as the scene asks, always or never), and the factor on that exposure.
 Status parse_exposure(const std::string& text, ExposureChoice* choice, float* factor);
 }  // namespace pocketray

@@ -1,4 +1,4 @@
-// Sequences of frames, as --frames names them.
+// Sequences of frames, as given by --frames.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -8,11 +8,11 @@
 namespace pocketray {
 
 struct FrameRange {
-  std::uint32_t first = 0, last = 0;  // both included
+  std::uint32_t first = 0, last = 0;  // both inclusive
   bool given = false;                 // by --frames
 };
 
-// Parses --frames, "0:350". Empty text leaves *range as it is.
+// Parses --frames, "0:350". Empty text leaves *range unchanged.
 Status parse_frames(const std::string& text, FrameRange* range);
 
 }  // namespace pocketray

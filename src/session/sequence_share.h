@@ -1,5 +1,5 @@
-// Which frames of a sequence each rank renders. A rank has a run of neighbouring frames, since what changes little from
-// one to the next is traced again only where it changes; one that is through takes half of the longest run left.
+// Distributes a sequence's frames among ranks. A rank has a run of consecutive frames, since only what changes between
+// frames is traced again; a rank that is done takes half of the longest remaining run.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -11,9 +11,9 @@ class SequenceShare {
   // The frames to render, in ascending order. Every rank begins with an equal run.
   SequenceShare(std::vector<std::uint32_t> frames, std::uint32_t rank_count);
 
-  // The next frames of a rank, at most so many; none only if none is left of any. What is given out stays its own.
+  // Returns a rank's next frames, at most `count`; none only if no rank has any left. They stay with the rank.
   std::vector<std::uint32_t> take(std::uint32_t rank, std::uint32_t count);
-  // Of all ranks, not given out yet.
+  // Number of frames of all ranks not yet given out.
   std::size_t left() const;
 
  private:

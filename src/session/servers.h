@@ -1,4 +1,4 @@
-// Render servers, as the commands and the viewer use them. Programs that use none hold a null pointer. remote/client
+// Render servers, as the commands and the viewer use them. Programs without servers hold a null pointer. remote/client
 // has the backend; builds without a network have none.
 #pragma once
 #include <atomic>
@@ -18,18 +18,18 @@ namespace pocketray {
 
 constexpr double kBestShare = -1;
 constexpr int kVerifyAuto = -1;
-constexpr std::uint32_t kLightEveryMax = 60;  // chosen: longer, and light lags by seconds
+constexpr std::uint32_t kLightEveryMax = 60;  // chosen: with more, light lags by seconds
 
 struct ServersOptions {
   std::vector<std::string> addresses;
-  std::string key;  // file of the key that encrypts the links; empty: they are not encrypted
+  std::string key;  // file of the key that encrypts the links; empty: unencrypted
   double device_share = kBestShare;
-  int verify = kVerifyAuto;       // servers' pixels to check per frame
+  int verify = kVerifyAuto;       // number of servers' pixels to check per frame
   bool coarse_first = false;      // long frames begin with a coarse picture
-  bool near_lossless = false;     // servers' pixels may be off by a level of their format in each channel
+  bool near_lossless = false;     // servers' pixels may be off by one level per channel
   std::string split = "rows";     // rows, effect or auto
   std::uint32_t light_pitch = 0;  // pixels between lights of a map; 0: the default
-  std::uint32_t light_every = 1;  // frames of a moving view to a map
+  std::uint32_t light_every = 1;  // frames of a moving view per map
   double price = 0, energy_pixel = 0, energy_byte = 0, cost_weight_ms = 0, cost_cap = 0;
 };
 
@@ -44,9 +44,9 @@ struct ServersState {
   bool cut_off = false;   // no rows for a while, on a device without the scene
   bool disputed = false;  // two servers sent different pixels, and this device has no scene to judge by
   std::uint32_t rows_done = 0;  // of the current frame
-  double left_ns = 0;           // estimated until it is complete; 0: it is
-  double anew_ns = 0;           // until one begun now would be, or its coarse picture; 0: unknown
-  bool coarse_shown = false;    // every row of the picture is of the current frame, many of them coarse
+  double left_ns = 0;           // estimated time until it is complete; 0: it is
+  double anew_ns = 0;           // time until one begun now would be, or its coarse picture; 0: unknown
+  bool coarse_shown = false;    // every row of the picture belongs to the current frame, many of them coarse
 };
 
 // The merged picture: rows without padding.
@@ -59,12 +59,12 @@ struct MergedPicture {
 struct ServersTotals {
   std::uint64_t frames = 0, device_rows = 0, server_rows = 0, bytes_in = 0, bytes_out = 0;
   std::uint64_t device_pixels = 0;     // traced in the device's rows
-  std::uint64_t unchanged_frames = 0;  // equal to the frame before: nothing was requested
+  std::uint64_t unchanged_frames = 0;  // equal to the previous frame: nothing was requested
   std::uint64_t checked = 0;           // servers' pixels checked, or rows if the device has no scene
   std::uint32_t lies = 0;              // servers caught with wrong pixels
-  std::uint64_t effect_frames = 0, lit_frames = 0, light_bytes = 0;  // shared by effect, with light, and that light's
-  double effect_ns = 0, rows_ns = 0;  // of a frame, as expected last of either way; 0: unknown
-  EffectTimes effect_times;           // of the way by effect
+  std::uint64_t effect_frames = 0, lit_frames = 0, light_bytes = 0;  // shared by effect, with light, and its bytes
+  double effect_ns = 0, rows_ns = 0;  // last expected time of a frame by either way; 0: unknown
+  EffectTimes effect_times;           // of frames by effect
   bool checks_rows = false;
   double caught_row = 0;              // lowest probability of catching one wrong row per frame, over all servers
   double local_ns = 0, known_ns = 0;  // predicted for the device alone, and measured; only frames with a prediction
@@ -94,23 +94,23 @@ struct ServersBackend {
   void (*stop_opening)(Servers* servers);
   // Triangles of the open scene, here or on servers.
   std::uint32_t (*triangle_count)(const Servers& servers, const Renderer& renderer);
-  // Scenes that a server offers; `server` is an index of ServersOptions::addresses.
+  // Scenes that a server offers; `server` is an index into ServersOptions::addresses.
   Status (*list_scenes)(Servers* servers, std::size_t server, std::vector<OfferedScene>* scenes);
 
-  // With the scene open, gets ready for frames; pixels arrive with 24 bits, or 16 if `small_pixels`.
+  // Prepares the open scene for frames; pixels arrive with 24 bits, or 16 if `small_pixels`.
   Status (*start)(Servers* servers, Renderer* renderer, bool small_pixels, bool dither);
-  // Ends what start() began, if it did. Call before the renderer's memory is given back, or close().
+  // Ends what start() began, if anything. Call before the renderer's memory is given back, or close().
   void (*stop)(Servers* servers);
   // Begin a frame, then advance it, each time for about `slice_ns`, until it is complete. begin_frame() abandons an
   // unfinished frame.
   Status (*begin_frame)(Servers* servers, Renderer* renderer, double seconds);
   bool (*advance_frame)(Servers* servers, Renderer* renderer, std::uint64_t slice_ns, const std::atomic<bool>* stop);
-  // Between frames: keeps connections and overtures going. Never blocks.
+  // Call between frames: keeps connections and overtures going. Never blocks.
   void (*tend)(Servers* servers);
   ServersState (*state)(const Servers& servers);
 
   MergedPicture (*picture)(const Servers& servers);
-  // Rows of the picture changed since the last call; false if none.
+  // Returns the rows of the picture changed since the last call; false if none.
   bool (*take_rows)(Servers* servers, std::uint32_t* row_begin, std::uint32_t* row_end);
   // Copies the finished part of the device's own picture into the merged one.
   void (*show_own_picture)(Servers* servers, const Renderer& renderer);

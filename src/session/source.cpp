@@ -54,7 +54,7 @@ Status load_imported(const std::string& name, Renderer* renderer, SceneSource* s
   source->material_names = imported.material_names;
   source->parts = imported.parts;
   source->files = imported.files;
-  // Copies from the heap into the block, in the form a device would map.
+  // Copies from the heap into the block, in the form that a device would map.
   std::size_t size = baked_size(imported.scene);
   auto* bytes = static_cast<std::uint8_t*>(arena_try_allocate(&renderer->scene_arena, size));
   if (!bytes) return scene_too_large(name, size, renderer->settings.memory_bytes, source);

@@ -10,10 +10,10 @@
 namespace pocketray {
 namespace {
 
-// Chosen: longer than a helper takes to finish what it was given last. One that still opens a large scene after a
-// failure is not waited for.
+// Chosen: longer than a helper takes to finish its last work. One that is still opening a large scene after a failure
+// is not waited for.
 constexpr double kFarewellSeconds = 10;
-constexpr double kInterruptSeconds = 0.3;  // between looks for an interrupt
+constexpr double kInterruptSeconds = 0.3;  // between checks for an interrupt
 
 // Tells the helpers to leave and waits for them: MPI ends a program that leaves before messages to it have arrived.
 void dismiss(const Team& team, int exit_status) {

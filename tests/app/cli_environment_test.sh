@@ -85,7 +85,7 @@ for scene in metal.obj none.pray; do
 done
 check studio_on_demand test "$(lines_of_studio "$(render model.obj asked.ppm --environment studio)")" = 1
 check studio_lights_diffuse bash -c '! cmp -s plain.ppm asked.ppm'
-check studio_lights_alone grep -q 'the light of a studio alone' <<<"$(render metal.pray alone.ppm --light none)"
+check studio_lights_alone grep -q 'only the light of a studio' <<<"$(render metal.pray alone.ppm --light none)"
 
 # Goal: a background in place of a sky leaves the sky's light, besides its sun. Method: without indirect light it is gone.
 "${run[@]}" bake model.obj -o sky.pray --environment sky >/dev/null

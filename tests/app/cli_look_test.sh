@@ -40,7 +40,7 @@ if "${run[@]}" render --help | grep -q glTF; then
   check key_is_usual grep -q 'adding a key and a fill light' <<<"$(render model.obj key.ppm --light key)"
   check key_gives_the_usual_picture cmp -s usual.ppm key.ppm
   check sun_is_told grep -q 'adding a sun' <<<"$(render model.obj sun.ppm --light sun)"
-  check none_is_told grep -q 'ambient light alone' <<<"$(render model.obj none.ppm --light none)"
+  check none_is_told grep -q 'only ambient light' <<<"$(render model.obj none.ppm --light none)"
   check sun_is_seen bash -c '! cmp -s usual.ppm sun.ppm && ! cmp -s sun.ppm none.ppm && ! cmp -s usual.ppm none.ppm'
   render model.obj levels.ppm --background '#Ff8000' >/dev/null
   check background_as_levels test "$(first_pixel levels.ppm)" = ff8000
