@@ -38,14 +38,14 @@ Status write_scene(const std::string& path, const Scene& scene, std::size_t* byt
   });
 }
 
-// Refuses bad paths before any work. A device, a pipe and standard output may have any name.
+// Refuses bad paths before any work. Devices, pipes and standard output may have any name.
 Status check(const BakeOptions& o) {
   if (!platform::is_device_or_pipe(o.output.c_str()) && !has_suffix(o.output.c_str(), ".pray"))
     return failure("-o is '%.300s': the name must end in .pray", o.output.c_str());
   return check_outputs({{"IN", o.input}}, {{"-o", o.output}, {"--json", o.json}});
 }
 
-// Prints, if wanted, and returns a row for each compressed texture.
+// Prints a row for each compressed texture, if requested, and returns the rows.
 nlohmann::json report_textures(const CompressedTextures& compressed, bool prints) {
   nlohmann::json rows = nlohmann::json::array();
   for (const CompressedTexture& row : compressed.report) {
@@ -62,7 +62,7 @@ nlohmann::json report_textures(const CompressedTextures& compressed, bool prints
   return rows;
 }
 
-// Leaves only the animation that is asked for.
+// Removes all animations except the requested one.
 Status keep_animation(const std::string& asked, Scene* scene) {
   std::uint32_t index;
   RETURN_IF_ERROR(find_animation(*scene, asked, &index));
@@ -119,7 +119,7 @@ Status bake(const BakeOptions& o) {
   give_block_back(accel_block);
   RETURN_IF_ERROR(status);
   if (!heap.warning.empty()) print_note(heap.warning);
-  if (has_studio) print_note("the model has no light: baking a studio with it; --environment none leaves it out");
+  if (has_studio) print_note("the model has no light: baking a studio with it; --environment none omits it");
   if (o.json != "-")
     std::printf("%s: %s, %s, %s, %.2f MiB (accelerator %.2f MiB), read in %.0f ms, built in %.0f ms\n",
                 o.output == "-" ? "standard output" : shown(o.output).c_str(),
@@ -166,9 +166,8 @@ void add_bake_command(Command program, int* exit_status) {
                   "longest texture side in texels; larger textures are halved until they fit")
       .capture_default_str()
       .range(1u, kTextureSideMax);
-  command.add_flag(
-      "--no-mip-maps", options->no_mip_maps,
-      "store no smaller levels of textures: they take a quarter less memory but show speckles where they appear small");
+  command.add_flag("--no-mip-maps", options->no_mip_maps,
+                   "store no mip levels: textures take a quarter less memory but sparkle where they appear small");
   command
       .add_option("--textures", options->textures,
                   "exact, or compressed: blocks of 4 to 12 bits a texel instead of 32; their errors are printed")

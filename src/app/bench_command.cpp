@@ -27,7 +27,7 @@ Json coherence_json(const CommonOptions& options, const Renderer& renderer, cons
           {"whole_because", because ? Json(because) : Json()}};
 }
 
-// The frames that were traced whole though coherence was asked for.
+// Prints how many frames were traced whole although coherence was requested.
 void print_whole_frames(const Renderer& renderer, const Measurement& m) {
   if (renderer.settings.coherence == CoherenceMode::off) return;
   if (!m.coherent)

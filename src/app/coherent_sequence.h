@@ -1,4 +1,4 @@
-// What coherence saves over a sequence of frames.
+// Savings by coherence over a sequence of frames.
 #pragma once
 #include "engine/coherent.h"
 #include "session/report.h"
@@ -11,13 +11,13 @@ struct CoherentSequence {
   const char* whole_because = nullptr;  // why the last frame after the first was traced whole; null: none was
 };
 
-// Where coherence has no effect, for the reason `because` (null: it has): refuses "on", and makes "auto" "off".
+// If coherence has no effect, for the reason `because` (null: it has one), refuses "on" and turns "auto" into "off".
 Status check_coherence(const char* because, CommonOptions* options);
 
 // render_coherent() for the next frame; an interrupt ends it early.
 Status render_next(Renderer* renderer, double seconds, CoherentSequence* sequence, bool* complete);
 
-// Adds what another program saved in frames of the same sequence.
+// Adds the savings of another process in frames of the same sequence.
 void add_coherence(const CoherentSequence& other, CoherentSequence* sequence);
 
 void print_coherence(const CoherentSequence& sequence);

@@ -18,7 +18,7 @@ std::string refuse_meaningless(const std::string& text, bool is_real) {
   return is_real && !std::isfinite(std::strtod(text.c_str(), nullptr)) ? "must be a finite number" : "";
 }
 
-// How many letters to insert, delete or replace to make one word of the other [Wagner & Fischer 1974].
+// Number of letters to insert, delete or replace to turn one word into the other [Wagner & Fischer 1974].
 std::size_t edit_distance(const std::string& a, const std::string& b) {
   std::vector<std::size_t> row(b.size() + 1);
   for (std::size_t j = 0; j < row.size(); ++j) row[j] = j;
@@ -34,7 +34,7 @@ std::size_t edit_distance(const std::string& a, const std::string& b) {
   return row.back();
 }
 
-// ", did you mean 'render'?", or nothing if no name is near.
+// ", did you mean 'render'?", or empty if no name is close.
 std::string suggestion(const std::string& word, const std::vector<std::string>& names) {
   std::string nearest;
   std::size_t least = 1 + std::min<std::size_t>(word.size() / 3, 3);
@@ -52,7 +52,7 @@ std::vector<std::string> option_names(const CLI::App& app) {
   return names;
 }
 
-// Says which word is wrong, if one is: an unknown command, or an unknown option of a command.
+// Names the wrong word, if any: an unknown command, or an unknown option of a command.
 std::string unknown_word(const CLI::App& app, const std::vector<std::string>& words) {
   if (words.empty()) return "";
   const CLI::App* command = nullptr;

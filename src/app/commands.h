@@ -1,4 +1,4 @@
-// Each adds its command to the program; when that command runs, it stores its exit status.
+// Each function adds its command to the program; when that command runs, it stores its exit status.
 #pragma once
 #include "app/command_line.h"
 #include "session/servers.h"
@@ -13,7 +13,7 @@ struct OptionalParts {
   const SideBySideBackend* side_by_side = nullptr;
   Team team;  // alone in builds without MPI
 };
-// Leaves *servers as it is in builds without a network, and null if options name no server.
+// Leaves *servers unchanged in builds without a network, and null if the options name no server.
 inline Status open_servers(const OptionalParts& parts, const ServersOptions& options, const platform::Device* emulated,
                            Servers** servers) {
   return parts.servers ? parts.servers->open(options, emulated, servers) : success();

@@ -60,11 +60,11 @@ void add_threads(Command command, CommonOptions* o) {
 void add_camera(Command command, CommonOptions* o) {
   command.add_option("--camera", o->camera,
                      "\"ex,ey,ez tx,ty,tz ux,uy,uz VFOV\": eye, target, up vector, vertical field of view in degrees");
-  command.add_option("--camera-index", o->camera_index, "which of the scene's cameras to use, counting from 0")
+  command.add_option("--camera-index", o->camera_index, "index of the scene's camera to use, counted from 0")
       .capture_default_str();
   command.add_option(
       "--exposure", o->exposure,
-      "stops to add to the scene's exposure, which is measured where an imported model has lights; auto: always "
+      "stops to add to the scene's exposure, which is measured if an imported model has lights; auto: always "
       "measured; fixed or fixed,STOPS: never, radiance 1 is white");
 }
 
@@ -86,8 +86,8 @@ Option add_server_option(Command command, std::vector<std::string>* addresses) {
 
 Option add_key_option(Command command, std::string* path) {
   return command.add_option("--key", *path,
-                            "encrypt the links and let in only who has the key in FILE, made by `pocketray keygen` and "
-                            "the same on both sides; its mode must be 0600");
+                            "encrypt the links and accept only peers that have the key in FILE, made by `pocketray "
+                            "keygen` and equal on both sides; its mode must be 0600");
 }
 
 void add_scene_options(Command command, CommonOptions* o, bool scene_required) {
@@ -139,7 +139,7 @@ void add_reading_options(Command command, ReadingChoice* choice) {
                    "refuse a model with vertices that are not finite instead of leaving out their faces");
   command
       .add_option("--model-root", choice->root,
-                  "folder that the model and the files that it names lie below; names with ../ may lead there")
+                  "folder that must contain the model and all files it refers to, even by ../")
       .default_str("the model's folder");
 #else
   (void)command, (void)choice;
@@ -149,8 +149,8 @@ void add_reading_options(Command command, ReadingChoice* choice) {
 void add_animation_option(Command command, std::string* name) {
   command
       .add_option("--animation", *name,
-                  "which of the scene's animations plays: its name or number as `plan` lists them, all (those that do "
-                  "not drive the same thing) or none")
+                  "the animation to play: its name or number as listed by `plan`, all (those that drive "
+                  "different things) or none")
       .default_str("all");
 }
 
@@ -158,8 +158,8 @@ Option add_environment_option(Command command, std::string* name) {
   return command.add_option(
       "--environment", *name,
       "light from all directions: an equirectangular picture (.hdr, .png, .jpg); sky or sky:ELEVATION,TURBIDITY, a "
-      "clear sky with a sun 0 … 90 degrees high (45) and haze 2 … 10 (3); studio, which models without light get where "
-      "it shows; or none");
+      "clear sky with a sun 0 … 90 degrees high (45) and haze 2 … 10 (3); studio, the default of models without light "
+      "where it matters; or none");
 }
 
 void add_look_options(Command command, CommonOptions* o, std::initializer_list<const char*> own_look) {
@@ -174,7 +174,7 @@ void add_look_options(Command command, CommonOptions* o, std::initializer_list<c
       command
           .add_option("--light", o->light,
                       "light for a scene that has none: key (a key and a fill light that follow the camera's side), "
-                      "sun (one from high above) or none (ambient alone)")
+                      "sun (one from high above) or none (ambient light only)")
           .one_of({"key", "sun", "none"})
           .capture_default_str();
   for (const char* other : own_look)
@@ -189,7 +189,7 @@ void add_look_options(Command command, CommonOptions* o, std::initializer_list<c
   command
       .add_option("--focus", o->focus,
                   "node, object or group of the model that fills the picture, seen from the same side; --orbit and "
-                  "--turntable go around it")
+                  "--turntable circle it")
       .default_str("the whole scene")
       .excludes(command.get_option("--camera"));
 #endif
@@ -200,7 +200,7 @@ void add_coherence_options(Command command, CommonOptions* o, const char* usual)
   command
       .add_option("--coherence", o->coherence,
                   "trace only what may have changed since the last frame; the pictures stay the same: on, off, or "
-                  "auto, where it pays")
+                  "auto, if it pays off")
       .capture_default_str();
   command
       .add_option("--coherence-table", o->coherence_table,
@@ -221,8 +221,8 @@ void add_budget_options(Command command, BudgetOptions* o) {
     return ms >= kBudgetMsMin && ms <= kBudgetMsMax ? "" : "must lie in 0.001 … 10000000 milliseconds";
   });
   Option flip = command.add_option("--flip-max", o->flip_max,
-                                   "mean ꟻLIP that the picture may have, as `pocketray accuracy` measured it for the "
-                                   "scene: chooses the fastest such settings, or the best of them within --budget-ms");
+                                   "maximum mean ꟻLIP, as measured by `pocketray accuracy` for the scene: chooses the "
+                                   "fastest settings within it or, with --budget-ms, the best ones");
   flip.check([](const std::string& text) {
     const double flip_max = std::strtod(text.c_str(), nullptr);
     return flip_max > 0 && flip_max <= 1 ? "" : "must be above 0 and at most 1";
@@ -246,27 +246,26 @@ void add_servers_options(Command command, ServersOptions* o) {
                   "pixels catch one wrong row of R in a frame with a probability of at least 1 - (1 - 1/R)^N")
       .group(group);
   command
-      .add_flag(
-          "--near-lossless", o->near_lossless,
-          "let servers send pixels of which each channel is off by one level of its format, for about half of the "
-          "bytes; otherwise every pixel is exact")
+      .add_flag("--near-lossless", o->near_lossless,
+                "let servers send pixels whose channels may be off by one level of their format, for about half of the "
+                "bytes; otherwise every pixel is exact")
       .group(group);
   command
       .add_option(
           "--split", o->split,
-          "what a frame is shared by: rows, which has the pixels of the device alone; effect: the device renders "
-          "every pixel without --indirect, a server that light at fewer pixels; auto: whichever is faster, or both, "
-          "where servers have whole rows and the device the others without --indirect")
+          "how to share a frame: rows: servers render some rows, exactly as the device would; effect: the device "
+          "renders every pixel without --indirect, a server that light at fewer pixels; auto: whichever is faster, or "
+          "both: servers render whole rows, the device the others without --indirect")
       .one_of({"rows", "effect", "auto"})
       .default_str("rows")
       .group(group);
-  command.add_option("--light-pitch", o->light_pitch, "with --split: pixels between those of a server's light, 2 … 16")
+  command.add_option("--light-pitch", o->light_pitch, "with --split: pixel spacing of a server's light, 2 … 16")
       .range(kLightPitchMin, kLightPitchMax)
       .default_str("6")
       .group(group);
   command
       .add_option("--light-every", o->light_every,
-                  "with --split: frames of a moving view for which one map of a server's light is used, 1 … 60")
+                  "with --split: number of frames of a moving view that use one map of a server's light, 1 … 60")
       .range(1u, kLightEveryMax)
       .capture_default_str()
       .group(group);

@@ -1,4 +1,4 @@
-// pocketray plan: shows the effects a scene needs, why, and its memory map.
+// pocketray plan: shows the effects that a scene needs, why, and its memory map.
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>

@@ -19,11 +19,11 @@
 namespace pocketray {
 namespace {
 
-// All that rendering takes. What refers to other members stays in place.
+// Everything that rendering uses. Not copied, since members refer to each other.
 struct Opened {
   RenderJob job;
   OpenScene scene;
-  ServersHandle closing;  // before the scene, whose block has what they need
+  ServersHandle closing;  // before the scene, whose block holds what they need
   Budget budget;
   AnimationFile animation;
   FrameJournal journal;
@@ -72,7 +72,7 @@ Status open_budgeted(const RenderOptions& o, const OutputBytes& bytes, RenderJob
   return success();
 }
 
-// Pictures and lists may not replace files that the scene is read from.
+// Pictures and journals must not replace files that the scene is read from.
 Status check_pictures(const RenderJob& job, const SceneSource& source) {
   if (source.files.empty()) return success();
   RETURN_IF_ERROR(check_not_read(source.files, {{"--json", job.options.common.json}}));
@@ -80,7 +80,7 @@ Status check_pictures(const RenderJob& job, const SceneSource& source) {
   return success();
 }
 
-// Reads which frames are finished, with --resume, and begins to list those that will be.
+// Reads which frames are finished, with --resume, and begins the journal of those to come.
 Status start_journal(const SceneSource& source, const Renderer& renderer, FrameJournal* journal, RenderJob* job) {
   if (!keeps_journal(job->options, job->asked)) return success();
   const std::string path = journal_path(job->options.output);
@@ -96,7 +96,7 @@ Status start_journal(const SceneSource& source, const Renderer& renderer, FrameJ
   return begin_journal(path, identity, finished, journal);
 }
 
-// A span for each row of the crop.
+// Makes one span for each row of the crop.
 void make_crop_spans(const PixelBox& crop, Renderer* renderer, RenderJob* job) {
   if (crop.width == 0) return;
   job->crop_spans = arena_array<Span>(&renderer->frame_arena, static_cast<std::size_t>(crop.height));
@@ -143,7 +143,7 @@ Status open_job(const RenderOptions& given, Opened* o) {
   RETURN_IF_ERROR(start_animation(renderer, &o->animation, job));
   if (leads(options->parts.team)) RETURN_IF_ERROR(start_journal(o->scene.source, *renderer, &o->journal, job));
   job->source = &o->scene.source;
-  if (renderer->coherence_state.planned && !job->servers) job->coherent = &o->coherent;  // or the client uses it
+  if (renderer->coherence_state.planned && !job->servers) job->coherent = &o->coherent;  // otherwise the client uses it
   return success();
 }
 
@@ -151,7 +151,7 @@ std::uint64_t row_count(const RenderJob& job, const Renderer& renderer) {
   return static_cast<std::uint64_t>(box_to_write(job.asked.picture, renderer.settings).height);
 }
 
-// Frames that no earlier run has finished.
+// Returns the frames that no earlier run has finished.
 std::vector<std::uint32_t> frames_to_render(const RenderJob& job) {
   std::vector<std::uint32_t> frames;
   const FrameRange& s = job.asked.sequence;
@@ -196,7 +196,7 @@ Status render_all(Opened* o, RenderedFiles* files, std::vector<std::uint32_t>* w
     bool complete;
     RETURN_IF_ERROR(render_file(renderer, job, frame, files, &complete));
     if (complete) finish(frame);
-    if (!complete && !lead) break;  // a team's leader still hears of what the others have finished
+    if (!complete && !lead) break;  // a team's leader still collects what the others have finished
   }
   *stopped = written->size() < frames.size();
   return success();
@@ -264,7 +264,7 @@ int lead(const RenderOptions& given) {
   return report(status);
 }
 
-// Renders the frames that the leader gives.
+// Renders the frames that the leader assigns.
 Status help(const TeamMessage& message, Opened* o, RenderedFiles* files) {
   return render_given_frames(o->job.options.parts.team, message, [&](SharedFrame* shared, bool* complete) {
     const double trace_ms = files->trace_ms;

@@ -30,7 +30,7 @@ Status render_with_servers(Renderer* renderer, const RenderJob& job, double seco
   return success();
 }
 
-// Renders in bands of rows, or what has changed, to show progress and to lose at most a frame when interrupted.
+// Renders in bands of rows, or only changes, to show progress and to lose at most a frame when interrupted.
 Status render_with_progress(Renderer* renderer, const RenderJob& job, std::uint32_t frame, RenderedFiles* files,
                             bool* complete) {
   Progress* progress = &files->progress;
@@ -73,7 +73,7 @@ void pack_page(Renderer* renderer, const RenderJob& job) {
 // Renders a single frame until its settings settle, a frame of a sequence once.
 Status render_budgeted(Renderer* renderer, const RenderJob& job, std::uint32_t frame, RenderedFiles* files,
                        bool* complete) {
-  constexpr int kSettleFrames = 12;  // derived: as many as the ladder of builtin_front() has steps up
+  constexpr int kSettleFrames = 12;  // derived: the number of steps up the ladder of builtin_front()
   RETURN_IF_ERROR(begin_budget_frame(job.budget, renderer));
   for (int i = 0; i < kSettleFrames; ++i) {
     std::uint32_t chosen = job.budget->governor.current;
@@ -98,7 +98,7 @@ Status render_one(Renderer* renderer, const RenderJob& job, std::uint32_t frame,
                     : render_with_progress(renderer, job, frame, files, complete);
 }
 
-// In renderer.image, all of it.
+// True if renderer.image holds the whole frame's radiance.
 bool shows_radiance(const RenderJob& job) {
   return !job.servers && job.asked.aov == Aov::none && job.crop_spans.empty();
 }

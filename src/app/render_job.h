@@ -1,4 +1,4 @@
-// What `pocketray render` renders, and one frame of it.
+// The work of `pocketray render`, and one frame of it.
 #pragma once
 #include "app/coherent_sequence.h"
 #include "app/render_options.h"
@@ -23,17 +23,17 @@ struct RenderJob {
   AnimationFile* animation = nullptr;  // null: a file per picture
   Array<Span> crop_spans;              // empty: the whole picture is traced
   FrameJournal* journal = nullptr;     // null: none is kept
-  std::vector<bool> is_finished;       // by an earlier run; by the frames' order, empty: none
+  std::vector<bool> is_finished;       // by an earlier run; in frame order, empty: none
 };
 
-// What has been rendered so far. Rendering a frame allocates nothing.
+// Results so far. Rendering a frame allocates nothing.
 struct RenderedFiles {
   Progress progress;
-  std::uint64_t rows_before = 0;  // of frames that the progress counts already
+  std::uint64_t rows_before = 0;  // of frames that the progress has already counted
   PictureOptions picture;
   AovPicture shown;
   std::uint32_t written = 0;
-  double trace_ms = 0;               // of all frames
+  double trace_ms = 0;               // over all frames
   char black[kBlackTextBytes] = "";  // why the first picture is black or shows nothing; empty: neither
 };
 

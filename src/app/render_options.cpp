@@ -85,12 +85,12 @@ Status check_path(const RenderOptions& o, const std::string& path, RenderRequest
   return check_outputs(inputs_of(o), {{"-o", path}, {"--json", o.common.json}});
 }
 
-// Standard output has no ending: PNG unless --format says otherwise.
+// Standard output has no suffix: PNG unless --format says otherwise.
 Status choose_kind(const RenderOptions& o, RenderRequest* request) {
   request->kind = o.output;
   if (o.output != "-")
     return o.format.empty() ? success()
-                            : failure("--format is for -o -: the ending of -o %.200s says it", o.output.c_str());
+                            : failure("--format is for -o -: the ending of -o %.200s decides", o.output.c_str());
   request->kind = "-." + (o.format.empty() ? "png" : o.format);
   return keep_output_for_data();
 }
@@ -168,7 +168,8 @@ Status check_frame_rate(const RenderOptions& o, const RenderRequest& request) {
   if (o.frames_per_second > 0 && !request.sequence.given)
     return failure("--fps is for sequences: add --frames 0:99 or --turntable 36");
   if (o.frames_per_second > 0 && o.turntable > 0 && request.animation == AnimationKind::none)
-    return failure("--fps changes nothing in numbered pictures of one time: write .gif, .apng or .mp4, or drop --fps");
+    return failure(
+        "--fps has no effect on numbered pictures at a fixed time: write .gif, .apng or .mp4, or drop --fps");
   Settings settings;
   RETURN_IF_ERROR(picture_size(o.common, &settings.width, &settings.height));
   const PixelBox box = box_to_write(request.picture, settings);
@@ -185,7 +186,7 @@ bool keeps_journal(const RenderOptions& o, const RenderRequest& request) {
 
 std::string identity_of(const RenderOptions& o, const RenderRequest& request, const SceneSource& source,
                         const Renderer& renderer) {
-  std::string text = o.common.scene.substr(0, source.baked ? 0 : std::string::npos);  // a built-in one is its name
+  std::string text = o.common.scene.substr(0, source.baked ? 0 : std::string::npos);  // a built-in scene is its name
   auto add = [&](const char* format, auto... values) {
     char part[400];
     std::snprintf(part, sizeof part, format, values...);
@@ -242,13 +243,13 @@ std::vector<std::string> unexpected(const RenderOptions& o, const RenderRequest&
   } else if (const double duration = static_cast<double>(scene.animations[renderer.animation].duration);
              last >= duration && last > 0) {
     char text[160];
-    std::snprintf(text, sizeof text, "the animation lasts %g s and begins anew then: %s %g s shows its %g s", duration,
+    std::snprintf(text, sizeof text, "the animation loops after %g s: %s %g s shows its %g s", duration,
                   sequence ? "the last frame, at" : "--time", last, duration > 0 ? std::fmod(last, duration) : 0);
     notes.push_back(text);
   }
   const bool many = renderer.settings.samples_per_pixel > 1;
   if (many && request.aov != Aov::none && request.aov != Aov::cost)
-    notes.push_back("--samples has no effect on --aov " + o.aov + ", which is that of the pixels' centres");
+    notes.push_back("--aov " + o.aov + " samples pixel centres; --samples is ignored");
   return notes;
 }
 
@@ -306,7 +307,7 @@ void add_render_options(Command command, RenderOptions* o) {
       .range(kAnimationRateMin, kAnimationRateMax)
       .default_str("the scene's");
   command.add_flag("--resume", o->resume,
-                   "leave out the frames that an earlier run of the same scene, version and options has finished; "
+                   "skip frames finished by an earlier run with the same scene, version and options; "
                    "OUT.resume lists them");
   command.add_option("--crop", o->crop,
                      "X,Y,WxH: trace and write only these pixels of the picture, counted from the top left");

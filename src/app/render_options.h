@@ -1,4 +1,4 @@
-// Options of `pocketray render`, and what they ask for.
+// Options of `pocketray render`, and the resulting request.
 #pragma once
 #include "app/commands.h"
 #include "app/options.h"
@@ -14,7 +14,7 @@ struct RenderOptions {
   float orbit_degrees = 0;
   std::uint32_t turntable = 0;
   double frames_per_second = 0;  // 0: the scene's
-  std::string format;            // of -o -
+  std::string format;            // for -o -
   std::string crop;
   bool resume = false, no_legend = false;
   int rotation = 0;
@@ -26,29 +26,29 @@ struct RenderOptions {
 
 struct RenderRequest {
   FrameRange sequence;
-  std::vector<std::string> paths;  // one per picture, or that of the animation
-  std::string kind;                // a path whose ending is the kind of file to write
+  std::vector<std::string> paths;  // one per picture, or the animation's
+  std::string kind;                // a path whose suffix is the kind of file to write
   AnimationKind animation = AnimationKind::none;
   Aov aov = Aov::none;
   PictureOptions picture;
 };
 
 void add_render_options(Command command, RenderOptions* options);
-// Refuses what makes no sense, and outputs that cannot be written. Coherence that has no effect becomes "off".
+// Refuses contradictory options, and outputs that cannot be written. Coherence without effect becomes "off".
 Status read_render_options(RenderOptions* options, RenderRequest* request);
 
 bool moves_camera(const RenderOptions& options);
-// How far the camera has orbited, in degrees, after so many frames.
+// Degrees that the camera has orbited after `frame_count` frames.
 float orbit_after(const RenderOptions& options, std::uint32_t frame_count);
-// Whether finished frames are listed, so that --resume can continue the sequence.
+// Returns whether finished frames are recorded, so that --resume can continue the sequence.
 bool keeps_journal(const RenderOptions& options, const RenderRequest& request);
-// Identifies what the pictures of a sequence show: the scene, version and options that matter, hashed.
+// Hash of everything that a sequence's pictures depend on: the scene, version and relevant options.
 std::string identity_of(const RenderOptions& options, const RenderRequest& request, const SceneSource& source,
                         const Renderer& renderer);
 double frame_rate(const RenderOptions& options, const SceneInfo& scene);
-// Time of a frame, in seconds.
+// Animation time of a frame, in seconds.
 double time_of(const RenderOptions& options, const RenderRequest& request, std::uint32_t frame, const SceneInfo& scene);
-// Options that do not do with this scene what their user may expect, a note each.
+// Notes about options that do not do what the user may expect with this scene.
 std::vector<std::string> unexpected(const RenderOptions& options, const RenderRequest& request, const Renderer& renderer);
 
 }  // namespace pocketray

@@ -9,7 +9,7 @@ namespace pocketray {
 
 namespace {
 
-constexpr float kEndedWeightTold = 0x1p-8f;  // less is no display level of light as bright as white
+constexpr float kEndedWeightTold = 0x1p-8f;  // less is below a display level, even if the light is as bright as white
 
 void print_share(const Servers& servers, std::uint32_t width) {
   ServersTotals t = servers.backend->totals(servers);
@@ -24,8 +24,7 @@ void print_share(const Servers& servers, std::uint32_t width) {
   if (t.device_rows > 0)
     std::printf("; the device traced %.1f %% of its pixels",
                 100 * static_cast<double>(t.device_pixels) / (static_cast<double>(t.device_rows) * width));
-  if (t.unchanged_frames > 0)
-    std::printf("; %.0f frames equal the one before", static_cast<double>(t.unchanged_frames));
+  if (t.unchanged_frames > 0) std::printf("; %.0f frames were unchanged", static_cast<double>(t.unchanged_frames));
   if (t.local_ns > 0) std::printf("; predicted %.2f times as fast as the device alone", t.local_ns / t.known_ns);
   if (t.checked > 0)
     std::printf(
@@ -37,7 +36,7 @@ void print_share(const Servers& servers, std::uint32_t width) {
   for (int i = 0; i < lines.line_count; ++i) std::printf("    %s\n", lines.lines[i]);
 }
 
-// Rays that --depth ended. A bound beyond white means only that a pixel may be anything the display shows.
+// Reports rays ended by --depth. A bound beyond white means only that a pixel may be anything that the display shows.
 void print_ended_rays(const Renderer& renderer, const Tracer& counts) {
   std::printf("  %s ended at depth %u; the surroundings stand in for what they would see: ",
               counted(counts.rays_ended, "ray").c_str(), renderer.settings.ray_depth);

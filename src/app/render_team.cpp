@@ -17,8 +17,8 @@ enum : std::uint8_t {
 
 constexpr double kWaitSeconds = 0.05;
 constexpr double kInterruptSeconds = 0.4;  // as for references: mpirun soon kills what does not end
-// Chosen: the leader answers once per frame of its own, which can take as long as many that change little; but what a
-// helper has, no other rank can take over.
+// Chosen: the leader answers once per frame of its own, which may take as long as many frames that change little; but
+// no other rank can take over what a helper holds.
 constexpr std::size_t kFramesAheadMax = 16, kShareOfLeft = 8;
 
 }  // namespace
@@ -64,7 +64,7 @@ void FrameLead::give_frames() {
   for (std::uint32_t rank = 1; rank < team_.size; ++rank) {
     Helper& helper = helpers_[rank];
     const std::size_t ahead = std::min(kFramesAheadMax, share_.left() / (kShareOfLeft * team_.size) + 1);
-    if (!helper.is_ready || helper.frames > ahead) continue;  // one in work and `ahead` waiting
+    if (!helper.is_ready || helper.frames > ahead) continue;  // one being rendered and `ahead` waiting
     TeamWriter text;
     const std::vector<std::uint32_t> frames = share_.take(rank, static_cast<std::uint32_t>(ahead + 1 - helper.frames));
     if (frames.empty()) return;

@@ -1,4 +1,4 @@
-// pocketray view: shows a scene on a screen, moved by buttons: coarse first, then refined. Input never waits.
+// pocketray view: shows a scene on a screen, controlled by buttons: coarse first, then refined. Input never waits.
 #include <chrono>
 #include <thread>
 
@@ -44,7 +44,7 @@ struct Loading {
   }
 };
 
-// Shows the waiting screen until the scene is loaded. False if the user quit first.
+// Shows the waiting screen until the scene is loaded. Returns false if the user quit first.
 bool wait_for(Viewer* viewer, Loading* loading) {
   while (!loading->done) {
     if (!show_waiting(viewer, "loading") || interrupted) return false;
@@ -90,7 +90,7 @@ Status show(const ViewCommand& o, const Loading& loading, Viewer* viewer, bool* 
   return status;
 }
 
-// Prints how long the screen lagged behind the buttons, if any were used.
+// Prints the lag of the screen behind the buttons, if any were used.
 void print_latency(const Viewer& viewer) {
   const Motion& motion = viewer.motion;
   if (motion.total_ns == 0) return;
@@ -99,7 +99,7 @@ void print_latency(const Viewer& viewer) {
               static_cast<double>(motion.total_ns) * 1e-9);
 }
 
-// Fails if the log is one of the files that the scene was read from, and leaves that as it was.
+// Fails, leaving the file unchanged, if the log is one of the files that the scene was read from.
 Status check_log(const ViewCommand& o, const OpenScene& opened) {
   if (o.log.empty()) return success();
   Status status = check_not_read(opened.source.files, {{"--log", o.log}});
@@ -107,7 +107,7 @@ Status check_log(const ViewCommand& o, const OpenScene& opened) {
   return status;
 }
 
-// Loads and shows the scene, with news as a message. False if the user quit while it was loading.
+// Loads and shows the scene, with news as a message. Returns false if the user quit while it was loading.
 bool load_and_show(const ViewCommand& o, const std::string& news, Viewer* viewer, Status* status, bool* again) {
   watch_scene(viewer);
   Loading loading(o.common, o.budget, viewer);
@@ -122,8 +122,8 @@ bool load_and_show(const ViewCommand& o, const std::string& news, Viewer* viewer
   return true;
 }
 
-// Recovers from a scene that failed to load: goes back to the previous one if it was dropped on the window, otherwise
-// keeps the last picture and waits for another. False if there is no picture to keep or the user quit.
+// Recovers from a scene that failed to load: returns to the previous one if it was dropped on the window, otherwise
+// keeps the last picture and waits for another. Returns false if there is no picture to keep or the user quit.
 bool goes_on_without(const Status& status, std::string* previous, std::string* news, ViewCommand* o, Viewer* viewer) {
   if (!viewer->has_picture) return false;
   std::string why = status.message;
@@ -162,7 +162,7 @@ Status view_scenes(ViewCommand* o, Viewer* viewer) {
   return status;
 }
 
-// Refuses options that exclude each other, and creates the folder for screenshots.
+// Refuses contradictory options, and creates the folder for screenshots.
 Status check_options(const ViewCommand& o) {
   RETURN_IF_ERROR(check_budget_options(o.budget));
   if (!o.servers.addresses.empty()) {
@@ -187,7 +187,7 @@ Status let_pick(ViewCommand* o, Viewer* viewer) {
   return success();
 }
 
-// From here on, messages go to the file of --log.
+// Redirects messages to the file of --log from here on.
 Status start_log(const ViewCommand& o) {
   if (o.log.empty()) return success();
   RETURN_IF_ERROR(check_not_input({{"SCENE", o.common.scene}, {"--front", o.budget.front}, {"--key", o.servers.key}},
@@ -197,7 +197,7 @@ Status start_log(const ViewCommand& o) {
   return success();
 }
 
-// The null screen has nobody who could press a button: while it rests, so does the program. Counted frames never rest.
+// Nobody can press a button on the null screen: while it rests, so does the program. Counted frames never rest.
 void let_null_screen_rest(const ViewCommand& o) {
   platform::NullSettings settings;
   if (o.view.frame_count == 0) settings.rest_ns = kSystemClock.sleep_ns;
@@ -275,7 +275,7 @@ void add_view_command(Command program, const OptionalParts& parts, int* exit_sta
                              "  F1, A [Y]             toggle the overlay\n") +
                  (parts.side_by_side ? "  V                     toggle the reference of --side-by-side\n" : "") +
                  "  N                     play the next animation, or none\n"
-                 "  T                     dim the pixels that the last frame did not trace again\n"
+                 "  T                     dim the pixels that the last frame did not retrace\n"
                  "  F12                   save a screenshot\n"
                  "  F5                    reload the scene\n"
                  "  Esc [start + select]  quit");

@@ -39,7 +39,7 @@ int lead(AccuracyOptions options) {
                  "pocketray: no plots: gnuplot is missing or failed; install it (Debian: gnuplot), then: cd -- %s && "
                  "gnuplot *.gnuplot\n",
                  shell_word(options.folder).c_str());
-  // A budget does not choose effects, so a front measured with effects switched by hand is not kept.
+  // A budget does not choose effects, so a front measured with manually switched effects is not kept.
   bool kept = status.ok && front.front.count > 1 && !front.path.empty() && options.common.effects == "auto";
   if (kept) {
     Status written = cache_front(front.path, front.front);

@@ -1,4 +1,4 @@
-// pocketray coherence-report: measures the saving by retracing only what changed, next to the paper's table.
+// pocketray coherence-report: measures the savings from retracing only what changed, next to the paper's table.
 #include <nlohmann/json.hpp>
 
 #include "accuracy/gnuplot.h"
@@ -33,7 +33,7 @@ Status plan_way(Way way, const ReportOptions& o, std::uint32_t table, Renderer* 
   settings->coherence_by_tables = way == Way::by_tables;
   RETURN_IF_ERROR(plan_renderer(renderer, storage, output));
   if (!has(renderer->effects.mask, Effect::animation) || !is_animated(renderer->scene))
-    return failure("%s does not move, so every frame would be the first again: choose a scene with an animation, as %s",
+    return failure("%s does not move, so all its frames are equal: choose a scene with an animation, such as %s",
                    o.common.scene.c_str(), kPapersScene);
   if (o.compare && (renderer->effects.mask & (bit(Effect::selective) | bit(Effect::undersampling))) != 0)
     return failure(
@@ -92,7 +92,7 @@ Status measure(const ReportOptions& o, CoherenceReport* report) {
       print_notes(coherent);
       if (!no_paper && (coherent.renderer.effects.mask & kNotInTables) != 0) {
         no_paper = true;
-        print_note("the paper's way is left out: its tables do not know which pixels mix their light");
+        print_note("the paper's way is left out: its tables do not track which pixels share light");
       }
       if (!range.given) range = whole_animation(whole.renderer.scene);
       describe(o, coherent.renderer, report);
@@ -107,7 +107,7 @@ Status measure(const ReportOptions& o, CoherenceReport* report) {
   return success();
 }
 
-// Each side of the tables, over the frames that were measured.
+// Sweeps the side of the tables over the measured frames.
 Status sweep_tables(const ReportOptions& o, CoherenceReport* report) {
   if (!o.sweep_table || interrupted) return success();
   report->tables.papers_way = report->ours.table_bytes == 0;
@@ -122,14 +122,14 @@ Status sweep_tables(const ReportOptions& o, CoherenceReport* report) {
     Status status = run_sequence({&whole.renderer, &coherent.renderer}, range, &progress, done, &run);
     end_progress(&progress);
     RETURN_IF_ERROR(status);
-    if (interrupted) break;  // its frames would not be those of the others
+    if (interrupted) break;  // its frames would not match the others'
     report->tables.sides.push_back(table_side(side, run));
     done += rendering_count(range);
   }
   return success();
 }
 
-// The image-space methods, over the frames that were measured.
+// Runs the image-space methods over the measured frames.
 Status compare(const ReportOptions& o, CoherenceReport* report) {
   if (!o.compare || interrupted) return success();
   OpenScene opened;
@@ -181,7 +181,7 @@ int run(const ReportOptions& o) {
 
 void add_coherence_report_command(Command program, int* exit_status) {
   auto o = std::make_shared<ReportOptions>();
-  Command command = program.add_subcommand("coherence-report", "measure the saving by retracing only what changed");
+  Command command = program.add_subcommand("coherence-report", "measure the savings from retracing only what changed");
   command.footer(
       "Renders a sequence twice, frame by frame and by tracing only the pixels that can differ from the last frame, "
       "and\n"

@@ -25,7 +25,7 @@ bool begins_with(const platform::LoadedFile& file, const std::string& signature)
                     [](char c, std::uint8_t b) { return static_cast<std::uint8_t>(c) == b; });
 }
 
-// The next number of a PPM's header, behind white space and comments; 0: there is none, or it is too large.
+// Reads the next number of a PPM's header, after white space and comments; 0 if there is none, or it is too large.
 std::size_t read_header_number(const platform::LoadedFile& file, std::size_t* at) {
   bool comment = false;
   for (; *at < file.byte_count && (comment || std::isspace(file.bytes[*at]) || file.bytes[*at] == '#'); ++*at)

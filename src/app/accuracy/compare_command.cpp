@@ -1,4 +1,4 @@
-// pocketray compare: how different two pictures are.
+// pocketray compare: measures how different two pictures look.
 #include <cmath>
 #include <cstdio>
 #include <memory>
@@ -17,7 +17,7 @@ namespace {
 
 struct CompareOptions {
   std::string reference, test, map, json;
-  double fail_above = 1;  // which no ꟻLIP exceeds
+  double fail_above = 1;  // no ꟻLIP exceeds this
   double pixels_per_degree = kHandheldPixelsPerDegree;
 };
 
@@ -89,7 +89,7 @@ void add_compare_command(Command program, int* exit_status) {
       "as\n"
       "stored, 1 being white; the largest difference of a channel; and the number of pixels that differ. PSNR is\n"
       "infinite for equal pictures (JSON: null). Alpha is ignored, and 16-bit PNGs are compared as 8 bits. The map\n"
-      "shows ꟻLIP from black (0) over violet and orange to light yellow (1), in the perceptually even colours of\n"
+      "shows ꟻLIP from black (0) through violet and orange to light yellow (1), in the perceptually even colours of\n"
       "magma.\n"
       "Try:  pocketray compare expected.png out.png -o map.png --fail-above 0.01");
   command.add_option("A", o->reference, "the reference: .png, .jpg or .ppm").required();
@@ -99,7 +99,8 @@ void add_compare_command(Command program, int* exit_status) {
       .range(0.0, 1.0)
       .default_str("never");
   command
-      .add_option("--pixels-per-degree,--ppd", o->pixels_per_degree, "resolution as seen: pixels per degree of vision")
+      .add_option("--pixels-per-degree,--ppd", o->pixels_per_degree,
+                  "viewing resolution: pixels per degree of visual angle")
       .range(4.0, 400.0)
       .default_str("23.6, a handheld's; 67 is usual for desktops");
   add_json_option(command, &o->json);

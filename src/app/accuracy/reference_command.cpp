@@ -1,4 +1,4 @@
-// pocketray reference: the picture that others are judged by.
+// pocketray reference: renders the picture that others are judged by.
 #include "app/accuracy/accuracy_command.h"
 
 #include <nlohmann/json.hpp>

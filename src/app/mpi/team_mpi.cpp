@@ -1,4 +1,4 @@
-// Only messages between two ranks: Open MPI's collective operations, and waiting for a message, use a whole core.
+// Uses only messages between two ranks: Open MPI's collective operations, and waiting for a message, use a whole core.
 #include "app/mpi/team_mpi.h"
 
 #include <mpi.h>
@@ -18,11 +18,11 @@ namespace pocketray {
 namespace {
 
 constexpr int kTag = 1;
-// Between looks for a message: a fiftieth of the time since the last one. So an answer is soon there, a render server's
-// next request is hardly kept waiting, and a long wait costs neither time nor caches of what is measured meanwhile (a
-// look takes some microseconds).
+// Polling interval: 2 % of the time since the last message. Answers arrive quickly, a render server's next request is
+// hardly delayed, and a long wait costs neither time nor caches of concurrent measurements (a poll takes some
+// microseconds).
 constexpr std::uint64_t kLookNsMin = 20'000, kLookNsMax = 20'000'000, kLookPart = 50;
-// A large message leaves only while its sender is inside MPI; so long at most.
+// Maximum wait in MPI for a large message, which is only sent while its sender is inside MPI.
 constexpr double kSendSeconds = 0.05;
 
 struct Sent {
@@ -31,8 +31,8 @@ struct Sent {
 };
 
 struct MpiTeam {
-  std::list<Sent> sent;        // not arrived yet
-  std::uint64_t heard_ns = 0;  // when the last message came
+  std::list<Sent> sent;        // not yet arrived
+  std::uint64_t heard_ns = 0;  // when the last message arrived
 };
 
 void sleep_ns(std::uint64_t ns) {
@@ -49,8 +49,8 @@ bool forget_arrived(MpiTeam* team) {
   return team->sent.empty();
 }
 
-// Calls is_there() until it is true, or the time has passed; sleeps in between, the longer the more time has passed
-// since `since_ns`.
+// Calls is_there() until it returns true or the time has passed; sleeps in between, longer as time passes since
+// `since_ns`.
 template <class IsThere>
 bool look_for(double seconds, std::uint64_t since_ns, IsThere&& is_there) {
   const std::uint64_t start = clock_ns();
@@ -103,7 +103,7 @@ MpiTeam* the_team() {
   return &team;
 }
 
-// Ranks of one machine share its cores.
+// Ranks on one machine share its cores.
 std::uint32_t cores_of_rank() {
   MPI_Comm machine;
   int ranks = 1;

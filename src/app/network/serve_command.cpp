@@ -32,7 +32,7 @@ struct ServeOptions {
 struct Serving {
   SceneStore store;
   std::vector<std::max_align_t> tcp_memory, tls_memory;
-  platform::Link *tcp = nullptr, *link = nullptr;  // link: tcp, or the encrypted one over it
+  platform::Link *tcp = nullptr, *link = nullptr;  // link: tcp, or the encrypted link over it
   Server* server = nullptr;
   Serving() = default;
   Serving(const Serving&) = delete;
@@ -50,7 +50,7 @@ void print_line(void*, const char* line) { (void)platform::print_line_at_once(li
 
 // Fits the number of streams to the limit on open files; fails if that limit is too low.
 Status plan_streams(ServerOptions* options) {
-  constexpr int kOtherFiles = 4;  // the listener's spare, a scene being read, files the C library opens
+  constexpr int kOtherFiles = 4;  // the listener's spare, a scene being read, files that the C library opens
   int wanted = server_stream_count(*options) + kOtherFiles, left = platform::descriptors_left(wanted);
   if (left >= wanted) return success();
   int own = server_stream_count(*options) - options->client_count_max - options->guest_count_max + kOtherFiles;
@@ -135,7 +135,7 @@ Status start(const ServeOptions& o, const ServeCluster& cluster, const SceneStor
   RETURN_IF_ERROR(find_address(o, &address));
   RETURN_IF_ERROR(plan_streams(options));
   RETURN_IF_ERROR(open_link(o, server_stream_count(*options), serving));
-  // Takes the address first, so that one already in use is reported before the slow reading of scenes.
+  // Binds the address first, so that one already in use is reported before the slow reading of scenes.
   RETURN_IF_ERROR(open_server(*options, serving->store, serving->link, address, &serving->server));
   RETURN_IF_ERROR(open_scene_store(store_options, &serving->store));
   for (const std::string& warning : serving->store.warnings) print_note(warning);
@@ -173,9 +173,9 @@ void print_totals(const ServerTotals& totals, const ServeCluster& cluster) {
   (void)platform::print_line_at_once(line);
 }
 
-// Serves until an interrupt; on several ranks, on rank 0.
+// Serves until an interrupt; on several ranks, runs on rank 0.
 int serve(const ServeOptions& o, const ClusterOptions& given, const ServeCluster& cluster) {
-  constexpr std::uint64_t kStepNs = 100'000'000;  // longest delay until an interrupt is noticed
+  constexpr std::uint64_t kStepNs = 100'000'000;  // maximum delay until an interrupt is noticed
   Serving serving;
   ServerOptions options = given.server;
   options.helpers = cluster.helpers;
@@ -247,7 +247,7 @@ void add_serve_command(Command program, const Team& team, ServeOnRanks on_ranks,
       .capture_default_str();
   command
       .add_option("--coherence", o->coherence,
-                  "trace only what may have changed since a client's last frame: on, off, or auto, where it pays and "
+                  "trace only what may have changed since a client's last frame: on, off, or auto, if it pays off and "
                   "its memory allows it")
       .capture_default_str();
   add_isa_option(command, &o->isa);

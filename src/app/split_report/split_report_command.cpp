@@ -1,4 +1,4 @@
-// pocketray split-report: measures what render servers gain a device, for each share of rows, next to the paper's
+// pocketray split-report: measures what render servers gain for a device, for each share of rows, next to the paper's
 // table.
 #include "app/split_report/split_report_command.h"
 
@@ -32,8 +32,8 @@ struct ReportOptions {
   bool no_paper = false;
 };
 
-// What a pixel costs the device in frames shared by effect, where these are possible. here_ns: of a whole pixel on this
-// machine; 0: not measured.
+// Computes the device's cost of a pixel in frames shared by effect, where these are possible. here_ns: cost of a whole
+// pixel on this machine; 0: not measured.
 Status make_own_light(double here_ns, SplitSetup* setup) {
   double own_ns;
   RETURN_IF_ERROR(measure_own_light_ns(setup->device, kLightPitch, &own_ns));
@@ -79,7 +79,7 @@ std::string title_of(const ReportOptions& o, const SplitSetup& s) {
   return text;
 }
 
-// The figures beside those of time.
+// Figures besides time.
 struct Extras {
   DeviceEnergy energy;
   Fronts fronts;
@@ -108,7 +108,7 @@ Json front_json(const std::vector<FrontPoint>& points, const char* unit) {
 
 Json point_json(const SplitPoint& p) { return {{"m", p.m}, {"ns_per_pixel", p.ns_per_pixel}}; }
 
-// Null where frames cannot be shared so.
+// Null if frames cannot be shared by effect.
 Json effect_json(const SplitPoint& p) {
   if (p.ns_per_pixel <= 0) return Json();
   Json point = point_json(p);
@@ -199,7 +199,7 @@ void print_bytes(const SplitSetup& setup, const SplitFigures& s) {
                 s.lossless_bytes, s.near_bytes, s.near_error);
   if (setup.device_prepare_ns > 0)
     std::printf(
-        "to pose what moves and refit the accelerator: %.3g ms on the device, which did so in %.0f %% of the "
+        "posing and refitting: %.3g ms on the device, which did so in %.0f %% of the "
         "frames, and %.2g ms on a server\n",
         setup.device_prepare_ns * 1e-6, 100 * s.chosen.prepared, setup.server_prepare_ns * 1e-6);
   if (s.chosen.kept_rows > 0)
@@ -230,14 +230,14 @@ void print_front(const char* unit, const std::vector<FrontPoint>& points) {
 void print_extras(const Extras& extras) {
   if (extras.fronts.energy.empty()) return;
   std::printf(
-      "time against energy: the fixed shares that no other beats in both, at %.0f nJ a pixel and %.0f nJ a byte beyond "
-      "the device idle\n",
+      "time against energy: the Pareto front of the fixed shares, at %.0f nJ per pixel and %.0f nJ per byte above "
+      "idle\n",
       extras.energy.pixel_nanojoules, extras.energy.byte_nanojoules);
   print_front("mJ per frame", extras.fronts.energy);
-  std::printf("time against price, where bytes have one\n");
+  std::printf("time against price, if bytes are charged\n");
   print_front("kB per frame", extras.fronts.bytes);
   if (extras.clients.empty()) return;
-  std::printf("one such server and many such devices, each with its own best share at the server's price\n");
+  std::printf("one of these servers shared by many such devices, each with its best share at the server's price\n");
   std::printf("  %-16s %6s %14s %14s\n", "clients", "m", "ms per frame", "price");
   for (const ClientsRow& row : extras.clients)
     std::printf("  %-16u %6.3f %14.2f %14.2f\n", row.count, row.m, row.ms, row.price);
@@ -333,8 +333,8 @@ void add_split_report_command(Command program, int* exit_status) {
   command.footer(
       "Device, link and servers are simulated on a virtual clock, so you need not start any. A busy machine affects "
       "only\n"
-      "the measured cost per pixel, unless --device-ns and --server-ns give it, and the share of that cost which a\n"
-      "pixel without indirect light has.\n"
+      "the measured cost per pixel, unless --device-ns and --server-ns give it, and the fraction of it that a\n"
+      "pixel without indirect light costs.\n"
       "Try:  pocketray split-report cornell --emulate pi-zero -o .\n"
       "      pocketray split-report statue --emulate tablet --servers 3 --json -");
   add_scene_options(command, &o->common);
