@@ -85,15 +85,19 @@ Outlook look_around(const SceneRays& rays, const Receiver& from, std::uint32_t c
     const Vec3& a = rays.frame.positions[t.vertex(0)];
     const Vec3 outward = cross(rays.frame.positions[t.vertex(1)] - a, rays.frame.positions[t.vertex(2)] - a);
     const Material& m = rays.frame.scene->materials[t.material()];
-    const bool shines = m.double_sided && !is_zero(m.emission);  // a lamp's back is another front
-    (dot(outward, direction) <= 0 || shines ? outlook.front : outlook.back) += 1.0 / count;
+    // Backs of lamps and of sheets are other fronts.
+    const bool is_body = rays.bodies == nullptr || (*rays.bodies)[hit.triangle];
+    const bool has_two_fronts = m.double_sided && (!is_zero(m.emission) || !is_body);
+    (dot(outward, direction) <= 0 || has_two_fronts ? outlook.front : outlook.back) += 1.0 / count;
   }
   return outlook;
 }
 
 double credible_sum(double sum, double closed, std::uint32_t count) {
   CHECK_GE(count, 1u);
-  const double error = kDoubt * std::sqrt(std::max(0.0, closed * (1 - closed)) / count);
+  CHECK(closed >= 0);
+  const double least = closed < 0.5 ? 1.0 / count : 0;  // what is small may lie between all rays
+  const double error = kDoubt * std::sqrt(std::max(least, closed * (1 - closed)) / count);
   return std::min(std::max(sum, closed - error), closed + error);
 }
 

@@ -84,7 +84,7 @@ Vec3d gather(const SceneRays& rays, const PatchLight& light, const Receiver& at,
   }
   // Surfaces fill the directions that are not open: this takes out the error of approximate factors and of visibility
   // by few rays, unless that share is the less certain.
-  const double closed = 1 - outlook.open;
+  const double closed = outlook.front + outlook.back;
   if (closed > 0.5 && seen < kSeen * closed) return {-1, 0, 0};
   if (seen > 0) sum = sum * std::min(2.0, credible_sum(seen, closed, kNodeRays) / seen);
   return sum + to_double(rays.frame.scene->info.background) * outlook.open;
@@ -159,7 +159,8 @@ Status solve_radiosity(const FrameData& frame, const RadiosityOptions& options, 
   std::vector<double> closed, area;
   std::vector<Vec3d> albedo, first(patches.size());
   for (std::size_t i = 0; i < patches.size(); ++i) {
-    closed.push_back(1 - looks[i].open), area.push_back(patches[i].area), albedo.push_back(patches[i].albedo);
+    closed.push_back(looks[i].front + looks[i].back), area.push_back(patches[i].area),
+        albedo.push_back(patches[i].albedo);
   }
   parallel_for(static_cast<std::uint32_t>(patches.size()), options.threads, [&](std::uint32_t i) {
     const Vec3d irradiance = mean_light(rays, patches[i]);

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "base/fmath.h"
 #include "radiosity/loose.h"
 #include "scene/builtin_helpers.h"
 #include "support/hard_case.h"
@@ -63,8 +64,28 @@ TEST_CASE("hard_72_emitters_of_one_material_light_each_other") {
   }
 }
 
-// Goal: a floor that emits reflects the light of a lamp of its own material above it, as of any other. Method: unit
-// square at height 1 over the middle of the floor, form factor .2394565 (HARDCASES row 37); both materials by turns.
+// What leaves the square lamp of the next test: 4, and half of what it gets from the floor, which sends 4 and half of
+// what it gets from the lamp. Sums over points of both; the lamp's light is taken for the same all over it.
+double lamp_between_itself_and_floor() {
+  constexpr int kLamp = 8, kFloor = 160;
+  auto at = [](int i, int count, double size) { return ((i + .5) / count - .5) * size; };
+  double of_floor = 0, of_lamp = 0;  // what the lamp gets per light of the floor, and of its own by way of the floor
+  for (int f = 0; f < kFloor * kFloor; ++f) {
+    const double x = at(f % kFloor, kFloor, 10), z = at(f / kFloor, kFloor, 10);
+    double seen = 0;  // mean of cos cos / (π r²) over the lamp
+    for (int l = 0; l < kLamp * kLamp; ++l) {
+      const double dx = x - at(l % kLamp, kLamp, 1), dz = z - at(l / kLamp, kLamp, 1), square = dx * dx + dz * dz + 1;
+      seen += 1 / (kPi * square * square) / (kLamp * kLamp);
+    }
+    const double area = 100.0 / (kFloor * kFloor);
+    of_floor += seen * area, of_lamp += .5 * seen * seen * area;
+  }
+  return (4 + .5 * 4 * of_floor) / (1 - .5 * of_lamp);
+}
+
+// Goal: a floor that emits reflects the light of a lamp of its own material above it, as of any other, and the lamp
+// reflects the floor's. Method: unit square at height 1 over the middle of the floor, form factor .2394565 (HARDCASES
+// row 37); both materials by turns.
 TEST_CASE("hard_72_lamp_over_a_floor_of_its_own_material") {
   count_assertions("1 % of the lamp's light");
   for (bool own : {true, false}) {
@@ -76,8 +97,38 @@ TEST_CASE("hard_72_lamp_over_a_floor_of_its_own_material") {
     add_quad(&s, {-.5f, 1, -.5f}, {.5f, 1, -.5f}, {.5f, 1, .5f}, {-.5f, 1, .5f}, lamp);
     aim(&s, {0, .5f, 0}, {0, 0, .001f}, 1);
     s.bind();
-    const double light = 4 * .5 * .2394565;
+    const double light = lamp_between_itself_and_floor() * .5 * .2394565;
     for (const Vec3& p : baked_picture(s.scene, 1200))
       CHECK(static_cast<double>(p.x) - 4 == doctest::Approx(light).epsilon(.01));
   }
+}
+
+// Goal: a small lamp above a floor under the open sky, which hardly a ray meets, spoils no factors: the lamp reflects
+// light of the floor back to it. Method: light of the floor's nodes below the lamp by its solid angle: what the floor
+// sends up, ρ E / π, times the lamp's reflectance, times the factors of both directions, summed over the floor.
+TEST_CASE("a_small_lamp_under_the_open_sky_is_solved") {
+  GeneratedScene s;
+  Material m;
+  m.diffuse = {.5f, .5f, .5f}, m.double_sided = 0;
+  const std::uint32_t floor = add_material(&s, m);
+  m.emission = {100, 100, 100};
+  const std::uint32_t lamp = add_material(&s, m);
+  add_quad(&s, {0, 0, 0}, {0, 0, 4}, {4, 0, 4}, {4, 0, 0}, floor);
+  add_quad(&s, {1.98f, 2, 1.98f}, {2.02f, 2, 1.98f}, {2.02f, 2, 2.02f}, {1.98f, 2, 2.02f}, lamp);
+  s.bind();
+  RadiositySolution solution;
+  REQUIRE(solve(s.scene, 400, &solution).ok);
+  float most = 0;
+  for (const RadiosityNode& node : solution.nodes) most = std::max(most, node.value.x);
+  // The lamp of area A at height h: E = L A h² / r⁴ at distance r; it gets ∫ ρ E h² / (π² r⁴), and sends ρ of it back.
+  const double area = .04 * .04, h = 2;
+  double arrives = 0;
+  const int side = 400;
+  for (int i = 0; i < side * side; ++i) {
+    const double x = (i % side + .5) * 4 / side - 2, z = (i / side + .5) * 4 / side - 2, square = x * x + z * z + h * h;
+    arrives += .5 * 100 * area * h * h / (square * square) * h * h / (kPi * kPi * square * square) * 16 / side / side;
+  }
+  const double below = .5 * arrives * area / (kPi * h * h);
+  MESSAGE(most, ", by closed form ", below);
+  CHECK(std::fabs(static_cast<double>(most) / below - 1) < .1);
 }
