@@ -207,11 +207,11 @@ contact-sheet: configure
 	  $(JSON:%=--json %) $(SHEET_OPTIONS)
 
 # Indirect light of rooms against full light transport: some from a seed, and those of strangers where they are.
-ROOMS ?= 50
+ROOMS ?= 56
 ROOM_FILES ?= $(wildcard ../shared/scenes/cornell/mcguire/*.obj ../shared/scenes/cornell/embree/*.obj ../shared/scenes/cornell/*.glb)
 rooms: setup-tests configure
 	cmake --build $(BUILD) -j$(JOBS) --target measure_rooms
-	$(BUILD)/measure_rooms --rounds 8 --lights --gaps --random $(ROOMS) $(ROOM_FILES)
+	$(BUILD)/measure_rooms --rounds 6 --lights --gaps --random $(ROOMS) $(ROOM_FILES)
 
 # Mach bands of radiosity by each reconstruction: a table, and the cube as [Bastos92] figs. 6 and 7 show it.
 mach-bands: setup-tests configure
