@@ -29,7 +29,7 @@ check budget_prices_what_the_scene_ignores test "$(grep -c 'ns=[123]$' three.fro
 check budget_keeps_no_price_that_was_wrong test "$(grep -c 'ns=1$' one.front)" = 0
 expect budget_is_named 0 '^  0.001 ms: ' render "$subject" "${small[@]}" --budget-ms 0.001 -o found.ppm
 expect budget_traces_a_quarter 0 '0.001 ms: .*resolution=half' render "$subject" "${small[@]}" --budget-ms 0.001 -o found.ppm
-expect budget_too_small 0 'even the fastest' render "$subject" "${small[@]}" --budget-ms 0.001 -o found.ppm
+expect budget_too_small 0 "even the front's fastest settings" render "$subject" "${small[@]}" --budget-ms 0.001 -o found.ppm
 check budget_in_the_cache test "$(ls cache/of_its_own/pocketray/*.front | wc -l)" = 1
 expect budget_of_a_flight 0 '% of 6 frames within 110' \
   render seesaw "${small[@]}" --frames 0:5 --orbit 2 --budget-ms 1000000 -o flight.raw

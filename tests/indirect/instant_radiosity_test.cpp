@@ -307,7 +307,7 @@ TEST_CASE("instant_radiosity_is_not_followed_by_tables") {
   std::unique_ptr<TestRenderer> t = rendered(room.scene, settings);
   CHECK_FALSE(t->renderer.coherence_state.planned);
   REQUIRE(t->renderer.coherence_state.unplanned_because != nullptr);
-  CHECK(std::string(t->renderer.coherence_state.unplanned_because).find("mix their light") != std::string::npos);
+  CHECK(std::string(t->renderer.coherence_state.unplanned_because).find("pixels share light") != std::string::npos);
 }
 
 // Goal: virtual lights that memory was not planned for are refused.

@@ -180,6 +180,6 @@ TEST_CASE("coarse_picture_that_is_not_due_ends_the_connection") {
     CHECK(asked > 0);
     CHECK(rig.log.empty() == (deviation == none || deviation == late));
     for (const std::string& line : rig.log)
-      CHECK(line.find(deviation == another_size ? "another size" : "unrequested") != std::string::npos);
+      CHECK(line.find(deviation == another_size ? "wrong size" : "unrequested") != std::string::npos);
   }
 }

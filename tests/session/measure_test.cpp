@@ -45,7 +45,7 @@ TEST_CASE("measure_counts_frames_traced_whole") {
   renderer->renderer.coherence_state.trial.rest = 3;
   m = measure(&renderer->renderer, 3);
   CHECK(m.whole_frames == 3);
-  CHECK(std::strstr(m.whole_because, "tried again") != nullptr);
+  CHECK(std::strstr(m.whole_because, "retrying") != nullptr);
   CHECK(m.pixels_traced == 3 * 32 * 24);
 }
 
