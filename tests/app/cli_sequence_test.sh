@@ -138,7 +138,7 @@ for kind in gif apng mp4; do expect "still_$kind" 1 'add --frames' render cube "
 expect gif_too_fast 1 'at most 50 .* --fps 50' render cube "${small[@]}" --turntable 4 --fps 60 -o refused.gif
 expect mp4_of_odd_size 1 'even .* try 34x24' render cube --size 33x24 --turntable 4 -o refused.mp4
 expect fps_of_a_still 1 'for sequences' render cube "${small[@]}" --fps 10 -o refused.ppm
-expect fps_of_pictures 1 'changes nothing' render cube "${small[@]}" --turntable 4 --fps 10 -o refused.ppm
+expect fps_of_pictures 1 'has no effect on numbered pictures' render cube "${small[@]}" --turntable 4 --fps 10 -o refused.ppm
 for rate in 0 -1 241 nan fast; do expect "fps_$rate" 1 'fps' render cube "${small[@]}" --turntable 4 "--fps=$rate" -o refused.gif; done
 mkdir folder.gif
 expect gif_is_a_folder 1 'is a folder' render seesaw "${small[@]}" --frames 0:99999 -o folder.gif
