@@ -13,7 +13,7 @@ bool asks_for(const Settings& settings, const IndirectInfo& info) {
 
 const IndirectInfo& info_of(Effect effect) {
   for (const IndirectInfo& info : IndirectList::kInfos)
-    if (has(info.effects, effect)) return info;
+    if (info.effects & bit(effect)) return info;  // built or not
   CHECK(false);
   return IndirectList::kInfos[0];
 }
@@ -32,7 +32,7 @@ EffectDecision decide_method(const EffectCall& c) {
 // --effects cannot force a method in place of the chosen one, nor radiosity in place of an environment's diffuse light.
 template <Effect effect>
 bool may_force_method(const EffectCall& c) {
-  if (c.indirect) return has(c.indirect->effects, effect);
+  if (c.indirect) return (c.indirect->effects & bit(effect)) != 0;
   if (c.settings.indirect == IndirectChoice::none || effect == Effect::instant_radiosity) return false;
   return effect != Effect::radiosity || !environment_of(c.scene);
 }
