@@ -1,4 +1,4 @@
-// What is a body and what a sheet.
+// Bodies are told from sheets.
 #include "radiosity/bodies.h"
 
 #include <doctest/doctest.h>

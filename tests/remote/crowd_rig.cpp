@@ -32,7 +32,7 @@ Message largest_ping() {
   return message;
 }
 
-// Whether it has had its answer, or waited long enough, and comes again.
+// Returns true once the attacker has its answer or has waited long enough, and attacks again.
 bool comes_again(Attack kind, ServerRig* rig, const Attacker& a) {
   const std::uint64_t passed = rig->now() - a.begun_ns;
   const bool late = a.frame > 0 && passed > 100 * kMs;

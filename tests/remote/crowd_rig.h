@@ -29,7 +29,7 @@ enum class Attack {
   pings_again,
   given_up_again,
 };
-// Whether each attack comes on a connection of its own.
+// Returns whether each attack comes on a new connection.
 inline bool is_repeated(Attack kind) { return kind >= Attack::views_again; }
 
 // Where each attacker's connections come from.

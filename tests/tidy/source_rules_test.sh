@@ -80,10 +80,11 @@ twice_must allowed src/plan/a.cpp src/import/b.cpp 'namespace n {' 'namespace {'
 twice_must allowed src/plan/a.cpp src/import/b.cpp 'void f() {' '  struct Storage {};' 'struct Storage {};' '}'
 twice_must allowed src/base/simd_a.h src/base/simd_b.h 'struct Float4 {};'
 
-twenty=$(yes '// Whether it is.' | head -n 20)
-must_fail "opens with a back-reference" src/base/a.h "$twenty" '  // The same of floats.'
-must_pass src/base/a.h "$twenty" '// Offset of the first.'
-must_pass tests/base/a_test.cpp "$twenty" '// Of the test.'
+comment_that_opens() { printf '// %s it.' "$1"; }
+twenty=$(yes "$(comment_that_opens Whether)" | head -n 20)
+must_fail "opens with a back-reference" src/base/a.h "$twenty" "  $(comment_that_opens 'The same')"
+must_pass src/base/a.h "$twenty" "$(comment_that_opens Offset)"
+must_pass tests/base/a_test.cpp "$twenty" "$(comment_that_opens Of)"
 must_pass src/shade/a.cpp '#include "accel/accel.h"' '#include "shade/b.h"' '#include <cmath>'
 must_pass src/app/command_line.cpp '#include <CLI/CLI.hpp>'
 must_pass src/app/a.cpp '#include "platform/platform.h"' '#include <vector>' 'auto p = new std::vector<int>; throw std::pow(1, 2);'
