@@ -130,7 +130,7 @@ double nearest_point(const FrameData& frame, std::uint32_t triangle, const Vec3&
   return product(offset, offset);
 }
 
-LightPoint point_on(const FrameData& frame, std::uint32_t triangle, float u, float v, double area) {
+LightPoint point_on(const FrameData& frame, const Emitter& e, std::uint32_t triangle, float u, float v, double area) {
   const Scene& scene = *frame.scene;
   const Triangle& t = scene.triangles[triangle];
   const Material& m = scene.materials[t.material()];
@@ -146,7 +146,7 @@ LightPoint point_on(const FrameData& frame, std::uint32_t triangle, float u, flo
   }
   constexpr float most = std::numeric_limits<float>::max();
   p.intensity = min(emission * static_cast<float>(area), Vec3{most, most, most});
-  p.material = t.material();
+  p.material = t.material(), p.triangle = e.triangle, p.count = e.parallelogram ? 2 : 1;
   p.two_sided = m.double_sided;
   return p;
 }
@@ -189,6 +189,7 @@ void each_slice(const FrameData& frame, const Lamp& lamp, double area_total, std
 // The surface point nearest to the centroid of a share that spans several emitters.
 struct NearestPoint {
   Vec3 centroid;
+  Emitter emitter;  // on which it lies
   std::uint32_t triangle;
   float u, v;
   double square;  // of its distance
@@ -199,7 +200,7 @@ void approach(const FrameData& frame, const Emitter& e, NearestPoint* nearest) {
   for (std::uint32_t triangle = e.triangle; triangle <= e.triangle + e.parallelogram; ++triangle) {
     float u, v;
     const double square = nearest_point(frame, triangle, nearest->centroid, &u, &v);
-    if (square < nearest->square) *nearest = {nearest->centroid, triangle, u, v, square};
+    if (square < nearest->square) *nearest = {nearest->centroid, e, triangle, u, v, square};
   }
 }
 
@@ -220,7 +221,7 @@ void place_whole_shares(const FrameData& frame, const Emitter& e, const Slice& s
     std::uint32_t triangle;
     float u, v;
     place_on_emitter(e, cell, &triangle, &u, &v);
-    points[slice.share + j] = point_on(frame, triangle, u, v, area);
+    points[slice.share + j] = point_on(frame, e, triangle, u, v, area);
   }
 }
 
@@ -259,7 +260,7 @@ std::uint32_t place_area_light(const FrameData& frame, const Lamp& lamp, LightPo
       if (other.square <= there) nearest = other;
     }
     if (nearest.square > there) keep_off_edges(&nearest.u, &nearest.v);
-    points[share] = point_on(frame, nearest.triangle, nearest.u, nearest.v, area);
+    points[share] = point_on(frame, nearest.emitter, nearest.triangle, nearest.u, nearest.v, area);
   };
   std::uint32_t share = kNone;
   each_slice(frame, lamp, total, n, [&](const Emitter& e, const Slice& slice) {
@@ -267,7 +268,7 @@ std::uint32_t place_area_light(const FrameData& frame, const Lamp& lamp, LightPo
     if (slice.share != share) {
       if (share != kNone) settle(share);
       share = slice.share;
-      nearest = {points[share].position, e.triangle, 0, 0, std::numeric_limits<double>::infinity()};
+      nearest = {points[share].position, e, e.triangle, 0, 0, std::numeric_limits<double>::infinity()};
     }
     approach(frame, e, &nearest);
   });

@@ -136,11 +136,12 @@ Vec3d transmittance(const ReferenceWorld& world, const ReferenceRay& ray, const 
 
 namespace {
 
-// One light's radiance towards the viewer; returns false if it contributes nothing. `weight` is the irradiance times
-// the cosine.
 bool is_own(const FrameData& frame, const ReferenceSurface& s, const LightPoint& light) {
   return light.material != kNone && &frame.scene->materials[light.material] == s.material;
 }
+
+// One light's radiance towards the viewer; returns false if it contributes nothing. `weight` is the irradiance times
+// the cosine.
 struct ReferenceLight {
   Vec3d direction, sent;  // unblocked
   double distance, weight;

@@ -22,7 +22,9 @@ struct LightPoint {
   float range;     // 0: no limit
   float cos_inner, cos_outer;
   std::uint32_t material;   // lamp's material, see shade/lights.h for its own surfaces; other lights kNone
-  std::uint32_t two_sided;  // area: emits on both sides
+  std::uint32_t triangle;   // area: first of the triangles on which it lies, ...
+  std::uint16_t count;      // ... one, or the two of a parallelogram
+  std::uint16_t two_sided;  // area: emits on both sides
 };
 
 // A group of lights of one kind.

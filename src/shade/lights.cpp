@@ -76,6 +76,25 @@ bool sample_area_light(const LightPoint& light, const Vec3& point, LightSample* 
 
 }  // namespace
 
+bool is_in_plane_of(const FrameData& frame, const LightPoint& light, std::uint32_t triangle) {
+  CHECK(light.material != kNone);
+  for (std::uint32_t v : frame.scene->triangles[triangle].vertices())
+    if (!is_in_plane(light, frame.positions[v])) return false;
+  return true;
+}
+
+bool is_unlit_by_own(const FrameData& frame, const Surface& s, const LightPoint& light) {
+  return has_stored_light(frame) || is_beside(frame, light, s.hit.triangle);
+}
+
+bool lights_up_own(const FrameData& frame, const Surface& s, const LightRun& run, const LightPoint& light,
+                   LightSample* sample) {
+  if (is_unlit_by_own(frame, s, light)) return false;
+  if (!run.sample(light, s.point, sample) || !(dot(s.normal, sample->direction) > 0)) return false;
+  sample->irradiance = min(sample->irradiance, s.material->emission * kPiF);
+  return true;
+}
+
 LightSampler find_light_sampler(Effect kind) {
   switch (kind) {
     case Effect::point_light:

@@ -12,41 +12,40 @@ inline bool is_in_plane(const LightPoint& light, const Vec3& p) {
   return std::fabs(dot(offset, light.direction)) <= kUneven * max_component(abs(offset)) + rounding;
 }
 
+// True if a triangle of the lamp's material lies in the plane of the light's point.
+bool is_in_plane_of(const FrameData& frame, const LightPoint& light, std::uint32_t triangle);
 // True if a triangle belongs to the flat piece of a lamp on which the light's point lies: its material, in its plane.
-// It neither receives light from the point nor blocks it; other pieces of the lamp do both.
+// It neither receives light from the point nor blocks it; other pieces of the lamp do both. Nearly all that are asked
+// about are triangles on which the point lies, where shadow rays end, or have another material.
 inline bool is_beside(const FrameData& frame, const LightPoint& light, std::uint32_t triangle) {
-  const Triangle& t = frame.scene->triangles[triangle];
-  if (t.material() != light.material) return false;
-  for (std::uint32_t v : t.vertices())
-    if (!is_in_plane(light, frame.positions[v])) return false;
-  return true;
+  if (frame.scene->triangles[triangle].material() != light.material) return false;
+  return triangle - light.triangle < light.count || is_in_plane_of(frame, light, triangle);
 }
 
 // True if surfaces have stored light, which includes that of lamps on surfaces of their own material.
 inline bool has_stored_light(const FrameData& frame) {
   return has(frame.mask, Effect::radiosity) && frame.scene->radiosity_info.count > 0;
 }
-// is_own(): the surface has the light's material. is_unlit_by_own(): such a surface gets no light from it, because it
-// is in the same flat piece or its stored light includes it.
+// True if the surface has the light's material.
 inline bool is_own(const FrameData& frame, const Surface& s, const LightPoint& light) {
   return light.material != kNone && &frame.scene->materials[light.material] == s.material;
 }
-inline bool is_unlit_by_own(const FrameData& frame, const Surface& s, const LightPoint& light) {
-  return has_stored_light(frame) || is_beside(frame, light, s.hit.triangle);
-}
+// True if a surface of the light's material gets no light from it: it is in the same flat piece, or its stored light
+// includes it.
+bool is_unlit_by_own(const FrameData& frame, const Surface& s, const LightPoint& light);
+// lights_up() for a surface of the light's material. A piece of an emitter does not light itself; another piece gets at
+// most as much from each point as if the emitter surrounded it.
+bool lights_up_own(const FrameData& frame, const Surface& s, const LightRun& run, const LightPoint& light,
+                   LightSample* sample);
 
 // Returns the light if its own surface must not block it, otherwise null.
 inline const LightPoint* emitter_of(const LightPoint& light) { return light.material != kNone ? &light : nullptr; }
 
-// Returns whether a light, if unblocked, contributes to the surface. A piece of an emitter does not light itself;
-// another piece gets at most as much from each point as if the emitter surrounded it.
+// Returns whether a light, if unblocked, contributes to the surface.
 inline bool lights_up(const FrameData& frame, const Surface& s, const LightRun& run, const LightPoint& light,
                       LightSample* sample) {
-  const bool own = is_own(frame, s, light);
-  if (own && is_unlit_by_own(frame, s, light)) return false;
-  if (!run.sample(light, s.point, sample) || !(dot(s.normal, sample->direction) > 0)) return false;
-  if (own) sample->irradiance = min(sample->irradiance, s.material->emission * kPiF);
-  return true;
+  if (is_own(frame, s, light)) return lights_up_own(frame, s, run, light, sample);
+  return run.sample(light, s.point, sample) && dot(s.normal, sample->direction) > 0;
 }
 
 LightSampler find_light_sampler(Effect kind);  // point_light, spot_light, directional_light or area_light
