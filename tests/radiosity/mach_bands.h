@@ -4,8 +4,8 @@
 #include <memory>
 #include <vector>
 
-#include "radiosity/solve.h"
 #include "scene/builtin_helpers.h"
+#include "session/radiosity_solver.h"
 #include "support/generated_scene.h"
 
 namespace pocketray {
