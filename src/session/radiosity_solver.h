@@ -15,11 +15,6 @@ struct RadiosityOptions {
   std::uint32_t patch_count = 1200;  // roughly
   double nodes_per_patch = 2;        // along a side, of the grids
   double converged = 1e-4;           // unshot share of the emitted light
-  // Stores light that comes straight from the lights, too, as [Bastos92] does; whoever renders it leaves that out. For
-  // comparison: shadows are as coarse as the grids.
-  bool stores_direct_light = false;
-  // Flat surfaces, too, store light at the corners of their triangles, halved like others. For comparison with grids.
-  bool stores_at_corners = false;
   std::uint32_t threads = 1;
 };
 

@@ -1,5 +1,7 @@
 // Where light is stored: the nodes of grids on flat surfaces, and the corners of other triangles and their parts.
 #pragma once
+#include "desktop/radiosity/rays.h"
+#include "desktop/radiosity/surfaces.h"
 #include "session/radiosity_solver.h"
 
 namespace pocketray {
