@@ -37,7 +37,7 @@ void print_whole_frames(const Renderer& renderer, const Measurement& m) {
 }
 
 Json to_json(const CommonOptions& options, const Renderer& renderer, Measurement* m) {
-  Range pixel = range_of(m->ns_per_pixel.data(), m->frame_count);
+  MeasuredRange pixel = range_of(m->ns_per_pixel.data(), m->frame_count);
   Json rows = Json::array();
   for (std::uint32_t row = 0; row < renderer.settings.height; ++row)
     rows.push_back(range_of(&m->row_ns[static_cast<std::size_t>(row) * m->frame_count_max], m->frame_count).median /
@@ -74,7 +74,7 @@ Json to_json(const CommonOptions& options, const Renderer& renderer, Measurement
 }
 
 void print_table(const CommonOptions& options, const Renderer& renderer, Measurement* m) {
-  Range pixel = range_of(m->ns_per_pixel.data(), m->frame_count);
+  MeasuredRange pixel = range_of(m->ns_per_pixel.data(), m->frame_count);
   std::printf("%s: %s triangles, %u×%u, %u thread%s, %s, %u frame%s%s\n", shown(options.scene).c_str(),
               grouped(renderer.scene.triangles.count).c_str(), renderer.settings.width, renderer.settings.height,
               renderer.settings.threads, renderer.settings.threads == 1 ? "" : "s", isa_name(active_isa()),
@@ -106,7 +106,7 @@ void print_table(const CommonOptions& options, const Renderer& renderer, Measure
 }
 
 Json sparse_json(const SparseCost* costs) {
-  auto range = [](const Range& ns) { return Json{{"min", ns.min}, {"median", ns.median}, {"max", ns.max}}; };
+  auto range = [](const MeasuredRange& ns) { return Json{{"min", ns.min}, {"median", ns.median}, {"max", ns.max}}; };
   Json list = Json::array();
   for (int i = 0; i < kSparseFractionCount; ++i)
     list.push_back({{"fraction", costs[i].fraction},

@@ -14,7 +14,7 @@ namespace {
 constexpr std::uint32_t kDividedSpansMax = 512;
 
 // Spans that a thread takes at once, or one part of them, split by columns.
-struct Piece {
+struct SpanGroup {
   std::uint32_t begin, count;
   std::uint32_t part = 0, part_count = 1;
   std::uint32_t column_begin = 0, column_end = 0;  // of all parts
@@ -26,14 +26,14 @@ struct SpanQueue {
   std::uint32_t thread_count;
   std::mutex mutex;  // protects the members below
   std::uint32_t next_span = 0;
-  Piece last = {0, 0};  // the last one taken; its remaining parts come next
+  SpanGroup last = {0, 0};  // the last one taken; its remaining parts come next
   bool errand_waits = job.errand.run != nullptr;
 };
 
 // Divides a strip of tiles into about `wanted` parts: whole packets if there is one for each thread.
-void divide(const Span* spans, std::uint32_t wanted, std::uint32_t thread_count, Piece* piece) {
+void divide(const Span* spans, std::uint32_t wanted, std::uint32_t thread_count, SpanGroup* group) {
   std::uint32_t begin = ~0u, end = 0, row_end = 0;
-  for (std::uint32_t i = 0; i < piece->count; ++i) {
+  for (std::uint32_t i = 0; i < group->count; ++i) {
     begin = std::min<std::uint32_t>(begin, spans[i].column_begin);
     end = std::max<std::uint32_t>(end, spans[i].column_end);
     row_end = std::max<std::uint32_t>(row_end, spans[i].row + 1);
@@ -41,35 +41,35 @@ void divide(const Span* spans, std::uint32_t wanted, std::uint32_t thread_count,
   if (begin >= end) return;
   const std::uint32_t columns = end - begin, packet = packet_columns(row_end - spans[0].row);
   const std::uint32_t parts_max = std::max(columns / packet, std::min(columns, thread_count));
-  piece->part_count = std::max(1u, std::min(parts_max, wanted));
-  piece->column_begin = begin, piece->column_end = end;
-  if (piece->part_count * packet <= columns) piece->side = packet;
+  group->part_count = std::max(1u, std::min(parts_max, wanted));
+  group->column_begin = begin, group->column_end = end;
+  if (group->part_count * packet <= columns) group->side = packet;
 }
 
-std::uint32_t column_of(const Piece& piece, std::uint32_t part) {
-  CHECK_LE(part, piece.part_count);
-  if (part == piece.part_count) return piece.column_end;
-  const std::uint32_t columns = piece.column_end - piece.column_begin;
-  return piece.column_begin + columns * part / piece.part_count / piece.side * piece.side;
+std::uint32_t column_of(const SpanGroup& group, std::uint32_t part) {
+  CHECK_LE(part, group.part_count);
+  if (part == group.part_count) return group.column_end;
+  const std::uint32_t columns = group.column_end - group.column_begin;
+  return group.column_begin + columns * part / group.part_count / group.side * group.side;
 }
 
 // Returns the queue's next spans: a strip of tiles, towards the end in parts so that all threads finish together. Parts
 // are columns of the strip, since tiles of fewer rows would cost more per pixel.
-Piece next_spans(const SpanQueue& queue) {
+SpanGroup next_spans(const SpanQueue& queue) {
   const TraceJob& job = queue.job;
   const std::uint32_t left = job.span_count - queue.next_span;
   const Span* spans = job.spans + queue.next_span;
   if (job.spans_at_once) return {queue.next_span, std::min(job.spans_at_once, left)};
-  Piece piece = {queue.next_span, strip_span_count(spans, left)};
-  if (queue.thread_count == 1 || piece.count > kDividedSpansMax) return piece;
-  divide(spans, (piece.count * 2 * queue.thread_count + left - 1) / left, queue.thread_count, &piece);
-  return piece;
+  SpanGroup group = {queue.next_span, strip_span_count(spans, left)};
+  if (queue.thread_count == 1 || group.count > kDividedSpansMax) return group;
+  divide(spans, (group.count * 2 * queue.thread_count + left - 1) / left, queue.thread_count, &group);
+  return group;
 }
 
-// Returns false if no piece is left, or the job was stopped. Strips that were begun are completed.
-bool take_piece(SpanQueue* queue, Piece* piece) {
+// Returns false if no group is left, or the job was stopped. Strips that were begun are completed.
+bool take_group(SpanQueue* queue, SpanGroup* group) {
   const TraceJob& job = queue->job;
-  Piece* last = &queue->last;
+  SpanGroup* last = &queue->last;
   if (last->count == 0 || ++last->part == last->part_count) {
     if (queue->next_span == job.span_count) return *last = {0, 0}, false;
     if (job.stop && job.stop->load(std::memory_order_relaxed)) return *last = {0, 0}, false;
@@ -77,18 +77,18 @@ bool take_piece(SpanQueue* queue, Piece* piece) {
     queue->next_span += last->count;
     if (job.span_ns) std::fill_n(job.span_ns + last->begin, last->count, 0);
   }
-  *piece = *last;
+  *group = *last;
   return true;
 }
 
-void trace_piece(const TraceJob& job, std::uint32_t thread, const Piece& piece) {
-  const Span* spans = job.spans + piece.begin;
+void trace_group(const TraceJob& job, std::uint32_t thread, const SpanGroup& group) {
+  const Span* spans = job.spans + group.begin;
   Span clipped[kDividedSpansMax];
-  std::uint32_t count = piece.count;
-  if (piece.part_count > 1) {
-    const std::uint32_t begin = column_of(piece, piece.part), end = column_of(piece, piece.part + 1);
+  std::uint32_t count = group.count;
+  if (group.part_count > 1) {
+    const std::uint32_t begin = column_of(group, group.part), end = column_of(group, group.part + 1);
     count = 0;
-    for (std::uint32_t i = 0; i < piece.count; ++i) {
+    for (std::uint32_t i = 0; i < group.count; ++i) {
       Span span = spans[i];
       span.column_begin = static_cast<std::uint16_t>(std::max<std::uint32_t>(span.column_begin, begin));
       span.column_end = static_cast<std::uint16_t>(std::min<std::uint32_t>(span.column_end, end));
@@ -109,13 +109,13 @@ void take_spans(void* context, std::uint32_t thread) {
     job.errand.run(job.errand.context);
     lock.lock();
   }
-  for (Piece piece; take_piece(queue, &piece);) {
+  for (SpanGroup group; take_group(queue, &group);) {
     lock.unlock();
     const std::uint64_t start = job.span_ns ? clock_ns() : 0;
-    trace_piece(job, thread, piece);
-    const std::uint64_t each = job.span_ns ? (clock_ns() - start) / piece.count : 0;
+    trace_group(job, thread, group);
+    const std::uint64_t each = job.span_ns ? (clock_ns() - start) / group.count : 0;
     lock.lock();
-    for (std::uint32_t i = 0; job.span_ns && i < piece.count; ++i) job.span_ns[piece.begin + i] += each;
+    for (std::uint32_t i = 0; job.span_ns && i < group.count; ++i) job.span_ns[group.begin + i] += each;
   }
 }
 

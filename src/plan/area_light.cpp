@@ -68,7 +68,7 @@ void each_emitter(const FrameData& frame, const Lamp& lamp, Visit visit) {
 
 // Position of a cell's point on the emitter: barycentrics in the triangle, or in one half of the parallelogram. It is
 // the centroid of the cell's image, so the mean of the points is the emitter's centroid.
-void place_on_emitter(const Emitter& e, const Cell& cell, std::uint32_t* triangle, float* u, float* v) {
+void place_on_emitter(const Emitter& e, const UnitCell& cell, std::uint32_t* triangle, float* u, float* v) {
   *triangle = e.triangle;
   float x = static_cast<float>(0.5 * (cell.x_begin + cell.x_end)), y = static_cast<float>(cell.y);
   if (!e.parallelogram) {
@@ -153,8 +153,8 @@ LightPoint point_on(const FrameData& frame, const Emitter& e, std::uint32_t tria
 
 // A light's points represent equal shares of its area, taken in the order of its
 // emitters. A slice of an emitter is a part of one share, or several whole shares. Its x
-// is the first coordinate of a Cell, in which area is uniform.
-struct Slice {
+// is the first coordinate of a cell, in which area is uniform.
+struct LampSlice {
   std::uint32_t share, share_count;
   bool whole;
   double share_part;  // fraction of one share
@@ -177,7 +177,7 @@ void each_slice(const FrameData& frame, const Lamp& lamp, double area_total, std
       const double share = std::floor(from);
       const bool whole = from == share && std::floor(end) > from;
       to = whole ? std::floor(end) : std::min(end, share + 1);
-      Slice slice = {static_cast<std::uint32_t>(share), 1, whole, to - from, 0, 0};
+      LampSlice slice = {static_cast<std::uint32_t>(share), 1, whole, to - from, 0, 0};
       if (whole) slice.share_count = static_cast<std::uint32_t>(to - from);
       CHECK_LT(slice.share, n);
       slice.x_begin = (from - begin) / (end - begin), slice.x_end = (to - begin) / (end - begin);
@@ -212,11 +212,12 @@ void keep_off_edges(float* u, float* v) {
 }
 
 // Places the points of the shares that lie entirely within a slice.
-void place_whole_shares(const FrameData& frame, const Emitter& e, const Slice& slice, double area, LightPoint* points) {
+void place_whole_shares(const FrameData& frame, const Emitter& e, const LampSlice& slice, double area,
+                        LightPoint* points) {
   CHECK(slice.whole);
   const double width = slice.x_end - slice.x_begin;
   for (std::uint32_t j = 0; j < slice.share_count; ++j) {
-    Cell cell = equal_cell(j, slice.share_count);
+    UnitCell cell = equal_cell(j, slice.share_count);
     cell.x_begin = slice.x_begin + cell.x_begin * width, cell.x_end = slice.x_begin + cell.x_end * width;
     std::uint32_t triangle;
     float u, v;
@@ -243,7 +244,7 @@ std::uint32_t place_area_light(const FrameData& frame, const Lamp& lamp, LightPo
   const double area = total / n;
   // 1. Centroids of the shares that span several slices.
   for (std::uint32_t i = 0; i < n; ++i) points[i].position = {0, 0, 0};
-  each_slice(frame, lamp, total, n, [&](const Emitter& e, const Slice& slice) {
+  each_slice(frame, lamp, total, n, [&](const Emitter& e, const LampSlice& slice) {
     if (slice.whole) return place_whole_shares(frame, e, slice, area, points);
     std::uint32_t triangle;
     float u, v;
@@ -263,7 +264,7 @@ std::uint32_t place_area_light(const FrameData& frame, const Lamp& lamp, LightPo
     points[share] = point_on(frame, nearest.emitter, nearest.triangle, nearest.u, nearest.v, area);
   };
   std::uint32_t share = kNone;
-  each_slice(frame, lamp, total, n, [&](const Emitter& e, const Slice& slice) {
+  each_slice(frame, lamp, total, n, [&](const Emitter& e, const LampSlice& slice) {
     if (slice.whole) return;
     if (slice.share != share) {
       if (share != kNone) settle(share);

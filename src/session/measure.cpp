@@ -70,7 +70,7 @@ double pixel_count(const Renderer& renderer) {
   return static_cast<double>(renderer.settings.width) * renderer.settings.height;
 }
 
-Range range_of(double* values, std::uint32_t count) {
+MeasuredRange range_of(double* values, std::uint32_t count) {
   CHECK(values != nullptr);
   CHECK_GT(count, 0u);
   std::sort(values, values + count);

@@ -6,11 +6,11 @@
 
 namespace pocketray {
 
-struct Range {
+struct MeasuredRange {
   double min = 0, median = 0, max = 0;
 };
 // Returns the range of the values, and sorts them.
-Range range_of(double* values, std::uint32_t count);
+MeasuredRange range_of(double* values, std::uint32_t count);
 
 constexpr std::uint32_t kFrameCountMax = 1000;  // chosen: the times of 240 rows then take 1.9 MB
 
@@ -37,8 +37,8 @@ Status measure_prices(Renderer* renderer, Measurement* measurement);
 
 // Cost per pixel when only some pixels are traced, as after a small change of the picture.
 struct SparseCost {
-  double fraction = 0;                               // approximate fraction of the pixels
-  Range scattered_ns_per_pixel, patch_ns_per_pixel;  // single random pixels; squares of kPatchSide pixels
+  double fraction = 0;                                       // approximate fraction of the pixels
+  MeasuredRange scattered_ns_per_pixel, patch_ns_per_pixel;  // single random pixels; squares of kPatchSide pixels
 };
 // Chosen: from a small moving object to the whole picture.
 constexpr double kSparseFractions[] = {0.02, 0.1, 0.5, 1};

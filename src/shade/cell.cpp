@@ -14,7 +14,7 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr float kRecolorMax = 4;
 
 // The range of several radiances.
-struct Range {
+struct ColorRange {
   Vec3 low = {kInfinity, kInfinity, kInfinity}, high = {0, 0, 0};
 
   void add(const Vec3& radiance) { low = min(low, radiance), high = max(high, radiance); }
@@ -22,7 +22,7 @@ struct Range {
 
 // Returns whether the Michelson contrast as displayed, including the display's own reflection, is below `contrast`.
 // False for non-finite radiances.
-bool is_low_contrast(const Range& range, const Selection& selection, float contrast) {
+bool is_low_contrast(const ColorRange& range, const Selection& selection, float contrast) {
   for (int c = 0; c < 3; ++c) {
     const float high = std::min(range.high[c], selection.white), low = std::min(range.low[c], selection.white);
     if (!(high - low < contrast * (high + low + selection.flare))) return false;
@@ -83,7 +83,7 @@ bool has_smooth_light(const FrameData& frame, const Surface& s) {
 
 bool is_flat(const FrameData& frame, const PixelCell& cell, float contrast) {
   const CellCorner& first = *cell.corner[0];
-  Range range;
+  ColorRange range;
   for (const CellCorner* corner : cell.corner) {
     CHECK(corner->known);
     if (corner->material != first.material || !corner->is_smooth) return false;
@@ -103,7 +103,7 @@ bool predict(const FrameData& frame, const PixelCell& cell, float contrast, cons
   Vec3 sum = {0, 0, 0};
   float sum_weight = 0;
   int count = 0;
-  Range range;
+  ColorRange range;
   for (int c = 0; c < 4; ++c) {
     const CellCorner& corner = *cell.corner[c];
     Vec3 predicted;

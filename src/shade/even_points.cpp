@@ -41,7 +41,7 @@ Vec2 rook_point(std::uint32_t index, std::uint32_t count) {
   return {middle(index, count), middle(kRook[count * (count - 1) / 2 + index], count)};
 }
 
-Cell equal_cell(std::uint32_t index, std::uint32_t count) {
+UnitCell equal_cell(std::uint32_t index, std::uint32_t count) {
   CHECK_LT(index, count);
   std::uint32_t rows = 1, begin = 0, end = 0;
   while (rows * (rows + 1) < count) ++rows;  // (rows + ½)² < count

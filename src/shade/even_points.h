@@ -14,12 +14,12 @@ namespace pocketray {
 Vec2 rook_point(std::uint32_t index, std::uint32_t count);
 
 // A cell of the unit square: its horizontal extent and the middle of its height.
-struct Cell {
+struct UnitCell {
   double x_begin, x_end, y;
 };
 // Cell `index` of `count` cells of equal area that tile the unit square: round(√count) rows of equal cells, the numbers
 // per row differing by at most one. A square number gives a grid. Sums over the centroids of the cells are exact for
 // functions that are linear over each cell.
-Cell equal_cell(std::uint32_t index, std::uint32_t count);
+UnitCell equal_cell(std::uint32_t index, std::uint32_t count);
 
 }  // namespace pocketray

@@ -14,7 +14,7 @@ namespace {
 enum State : std::uint8_t { kUnknown, kWanted, kKnown };
 
 // A tracer's window, from which a row of tiles is built, and the columns in use.
-struct Window {
+struct OpenWindow {
   Tracer* tracer;
   PixelRows rows;
   std::uint8_t* states;
@@ -31,7 +31,7 @@ struct Window {
 };
 
 // Opens the tracer's window around the tiles from `row` on. Rows shared with the previous window stay known.
-Window open_window(Tracer* tracer, std::uint32_t row) {
+OpenWindow open_window(Tracer* tracer, std::uint32_t row) {
   LatticeWindow& kept = tracer->window;
   CHECK_EQ(row % kTileSide, 0u);
   const std::uint32_t width = tracer->frame->settings.width;
@@ -71,14 +71,14 @@ Neighbours neighbours_of(const Settings& settings, std::uint32_t column, std::ui
   return n;
 }
 
-void want_columns(Window* window, std::uint32_t begin, std::uint32_t end) {
+void want_columns(OpenWindow* window, std::uint32_t begin, std::uint32_t end) {
   CHECK(begin < end && end <= window->rows.width);
   window->column_begin = std::min(window->column_begin, begin);
   window->column_end = std::max(window->column_end, end);
 }
 
 // Marks the traced pixels on which a pixel depends.
-void want(Window* window, std::uint32_t column, std::uint32_t row) {
+void want(OpenWindow* window, std::uint32_t column, std::uint32_t row) {
   std::uint8_t& state = window->state(column, row);
   if (state != kUnknown) return;
   if (window->is_traced(column, row)) {
@@ -90,7 +90,7 @@ void want(Window* window, std::uint32_t column, std::uint32_t row) {
 }
 
 // Marks the traced pixels on which a tile depends.
-void want_tile(Window* window, std::uint32_t column, std::uint32_t row) {
+void want_tile(OpenWindow* window, std::uint32_t column, std::uint32_t row) {
   const Settings& settings = window->settings();
   const std::uint32_t reach = settings.resolution == Resolution::half ? 2 : 1;
   const std::uint32_t begin = column - std::min(column, reach);
@@ -102,7 +102,7 @@ void want_tile(Window* window, std::uint32_t column, std::uint32_t row) {
   want_columns(window, begin, end);
 }
 
-void trace_pixels(const Window& window, Tile* tile) {
+void trace_pixels(const OpenWindow& window, Tile* tile) {
   Tracer* tracer = window.tracer;
   const FrameData& frame = *tracer->frame;
   CHECK_LE(tile->count, kPacketMax);
@@ -117,8 +117,8 @@ void trace_pixels(const Window& window, Tile* tile) {
 
 // Calls visit(column, row) for the lattice's wanted pixels in the range, and marks them as known.
 template <typename Visit>
-void take_wanted(const Window& window, std::uint32_t column_begin, std::uint32_t column_end, std::uint32_t row_begin,
-                 std::uint32_t row_end, Visit visit) {
+void take_wanted(const OpenWindow& window, std::uint32_t column_begin, std::uint32_t column_end,
+                 std::uint32_t row_begin, std::uint32_t row_end, Visit visit) {
   for (std::uint32_t row = row_begin; row < row_end; ++row)
     for (std::uint32_t column = column_begin; column < column_end; ++column) {
       std::uint8_t& state = window.state(column, row);
@@ -129,15 +129,15 @@ void take_wanted(const Window& window, std::uint32_t column_begin, std::uint32_t
 }
 
 // Rows of the picture in the window.
-std::uint32_t window_begin(const Window& window) {
+std::uint32_t window_begin(const OpenWindow& window) {
   return window.tracer->window.row - std::min(window.tracer->window.row, kRowsAbove);
 }
-std::uint32_t window_end(const Window& window) {
+std::uint32_t window_end(const OpenWindow& window) {
   return std::min(window.rows.first_row + kWindowRows, window.settings().height);
 }
 
 // Traces in packets of neighbours.
-void trace_wanted(const Window& window) {
+void trace_wanted(const OpenWindow& window) {
   Tile tile;
   for (std::uint32_t column = window.column_begin; column < window.column_end; column += kTileSide)
     take_wanted(window, column, std::min(column + kTileSide, window.column_end), window_begin(window),
@@ -149,7 +149,7 @@ void trace_wanted(const Window& window) {
 }
 
 // Traces with the frame's strip function, a row of tiles at a time.
-void trace_wanted_strips(const Window& window) {
+void trace_wanted_strips(const OpenWindow& window) {
   CHECK(window.tracer->frame->trace_lattice_strip != nullptr);
   const std::uint32_t end = window_end(window), left = window.column_begin / kTileSide * kTileSide;
   for (std::uint32_t row = window_begin(window), next; row < end; row = next) {
@@ -178,7 +178,7 @@ Vec3 along_edge(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
   return ((a + b) + (c + d)) * 0.25f;
 }
 
-const Vec3& reconstructed(const Window& window, std::uint32_t column, std::uint32_t row) {
+const Vec3& reconstructed(const OpenWindow& window, std::uint32_t column, std::uint32_t row) {
   Vec3& pixel = window.rows.at(column, row);
   std::uint8_t& state = window.state(column, row);
   if (state == kKnown) return pixel;
@@ -201,7 +201,7 @@ void for_each_pixel(std::uint32_t left, std::uint32_t top, std::uint64_t mask, V
 }
 
 // Reconstructs a whole tile inside the picture row by row; its neighbours need no mirroring.
-void reconstruct_tile(const Window& window, std::uint32_t left, std::uint32_t top, const PixelRows& image) {
+void reconstruct_tile(const OpenWindow& window, std::uint32_t left, std::uint32_t top, const PixelRows& image) {
   const auto width = static_cast<std::ptrdiff_t>(window.rows.width);
   constexpr int kSide = kTileSide;
   const bool half = window.settings().resolution == Resolution::half;
@@ -227,7 +227,7 @@ void reconstruct_tile(const Window& window, std::uint32_t left, std::uint32_t to
   }
 }
 
-void reconstruct(const Window& window, std::uint32_t left, std::uint32_t top, std::uint64_t mask,
+void reconstruct(const OpenWindow& window, std::uint32_t left, std::uint32_t top, std::uint64_t mask,
                  const PixelRows& image) {
   const Settings& settings = window.settings();
   const bool inside = left > 0 && top > 0 && left + kTileSide < settings.width && top + kTileSide < settings.height;
@@ -255,7 +255,7 @@ void trace_lattice(Tracer* tracer, const TileStrip& strip, const PixelRows& imag
   for (std::uint32_t r = 0; r < 2; ++r) {
     if (std::all_of(tiles.mask[r], tiles.mask[r] + tiles.tile_count, [](std::uint64_t mask) { return mask == 0; }))
       continue;
-    Window window = open_window(tracer, tiles.row + r * kTileSide);
+    OpenWindow window = open_window(tracer, tiles.row + r * kTileSide);
     for (std::uint32_t c = 0; c < tiles.tile_count; ++c) {
       const std::uint32_t left = tiles.column + c * kTileSide, top = tiles.row + r * kTileSide;
       if (tiles.mask[r][c] == ~std::uint64_t(0)) {

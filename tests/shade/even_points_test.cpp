@@ -32,7 +32,7 @@ Points rooks(std::uint32_t count) {
 Points cells(std::uint32_t count) {
   Points points;
   for (std::uint32_t i = 0; i < count; ++i) {
-    Cell cell = equal_cell(i, count);
+    UnitCell cell = equal_cell(i, count);
     points.push_back({0.5 * (cell.x_begin + cell.x_end), cell.y});
   }
   return points;
@@ -200,7 +200,7 @@ TEST_CASE("even_points_cells_are_equal_centred_and_even") {
     std::size_t least = n, most = 0;
     for (std::uint32_t i = 0; i < n;) {  // row by row
       std::uint32_t begin = i;
-      Cell first = equal_cell(i, n), cell = first;
+      UnitCell first = equal_cell(i, n), cell = first;
       CHECK(first.x_begin == 0);
       for (; i < n && (cell = equal_cell(i, n)).y == first.y; ++i) {
         CHECK(cell.x_begin == (i == begin ? 0 : equal_cell(i - 1, n).x_end));

@@ -17,7 +17,7 @@ namespace {
 // data evicted from the caches, which slows short frames the most.
 constexpr std::size_t kBatchFrames = 16, kBatchBytes = 64u << 20;
 
-struct Batch {
+struct PendingFrames {
   std::size_t frame_count = 0;        // maximum
   std::vector<Vec3> whole, coherent;  // frames in a row
   std::vector<Vec3> last;             // the frame before the batch
@@ -70,7 +70,7 @@ Status check_equal(const Vec3* whole, const Vec3* coherent, const SequenceRun& r
 }
 
 // Counts differences from the last frame. Leaves the frame as shown in last_shown.
-void count_changes(const Vec3* image, const Vec3* last, float exposure, const SequenceRun& run, Batch* batch,
+void count_changes(const Vec3* image, const Vec3* last, float exposure, const SequenceRun& run, PendingFrames* batch,
                    FrameFigures* figures) {
   const int width = static_cast<int>(run.width), height = static_cast<int>(run.height);
   pack_rows(image, width, height, 0, height, exposure, kRgb888, Rotation::none, false, batch->shown.data(), 3 * width);
@@ -111,7 +111,7 @@ void color_picture(const std::vector<std::uint8_t>& shown, RetracedPicture* pict
 // Renders `frame_count` frames from `first` on, first all whole and then all coherently; *finished: number rendered in
 // both ways.
 Status render_batch(const CoherencePair& pair, std::uint32_t first, std::size_t frame_count, std::uint64_t done,
-                    Progress* progress, Batch* batch, SequenceRun* run, std::size_t* finished) {
+                    Progress* progress, PendingFrames* batch, SequenceRun* run, std::size_t* finished) {
   CHECK(frame_count >= 1 && frame_count <= batch->frame_count);
   const bool ray_by_ray = pair.coherent->settings.coherence_by_tables;
   const std::size_t pixels = std::size_t(run->width) * run->height;
@@ -139,7 +139,7 @@ Status render_batch(const CoherencePair& pair, std::uint32_t first, std::size_t 
 }
 
 // Compares finished frames and keeps their figures.
-Status keep_batch(std::size_t finished, float exposure, Batch* batch, SequenceRun* run) {
+Status keep_batch(std::size_t finished, float exposure, PendingFrames* batch, SequenceRun* run) {
   const std::size_t pixels = std::size_t(run->width) * run->height;
   for (std::size_t i = 0; i < finished; ++i) {
     FrameFigures* f = &batch->figures[i];
@@ -155,7 +155,7 @@ Status keep_batch(std::size_t finished, float exposure, Batch* batch, SequenceRu
   return success();
 }
 
-void make_room(const CoherencePair& pair, const FrameRange& range, Batch* batch, SequenceRun* run) {
+void make_room(const CoherencePair& pair, const FrameRange& range, PendingFrames* batch, SequenceRun* run) {
   const Renderer& renderer = *pair.coherent;
   const std::size_t pixels = std::size_t(renderer.settings.width) * renderer.settings.height;
   run->range = range;
@@ -215,7 +215,7 @@ Status run_sequence(const CoherencePair& pair, const FrameRange& range, Progress
   CHECK(pair.coherent->coherence_state.planned);
   CHECK_LE(range.first, range.last);
   CHECK_GT(pair.whole->scene.info.frames_per_second, 0);
-  Batch batch;
+  PendingFrames batch;
   make_room(pair, range, &batch, run);
   bool complete = true;
   seal_memory();

@@ -16,15 +16,15 @@ constexpr double kBend = 1 - 1e-5;  // cosine between normals, as in surfaces.cp
 constexpr double kLongEdge = 0.5;   // of a patch's side
 constexpr std::size_t kEdges = 1 << 16;
 
-double area_of(const std::vector<Piece>& pieces) {
+double area_of(const std::vector<CellPiece>& pieces) {
   double area = 0;
-  for (const Piece& piece : pieces) area += polygon_area(piece.polygon);
+  for (const CellPiece& piece : pieces) area += polygon_area(piece.polygon);
   return area;
 }
 
-std::vector<Piece> side_of(const std::vector<Piece>& pieces, const Vec3d& origin, const Vec3d& axis) {
-  std::vector<Piece> result;
-  for (const Piece& piece : pieces) {
+std::vector<CellPiece> side_of(const std::vector<CellPiece>& pieces, const Vec3d& origin, const Vec3d& axis) {
+  std::vector<CellPiece> result;
+  for (const CellPiece& piece : pieces) {
     Polygon part = clip(piece.polygon, origin, axis, 0);
     if (part.size() >= 3) result.push_back({std::move(part), piece.triangle});
   }
@@ -32,10 +32,10 @@ std::vector<Piece> side_of(const std::vector<Piece>& pieces, const Vec3d& origin
 }
 
 // Length of the part of an edge within the rectangle around some pieces, relative to that.
-double share_within(const FlatSurface& flat, const CutEdge& edge, const std::vector<Piece>& pieces) {
+double share_within(const FlatSurface& flat, const CutEdge& edge, const std::vector<CellPiece>& pieces) {
   double low[2] = {1e300, 1e300}, high[2] = {-1e300, -1e300}, begin = 0, end = 1;
   const Vec3d axes[2] = {flat.s, flat.t};
-  for (const Piece& piece : pieces)
+  for (const CellPiece& piece : pieces)
     for (const Vec3d& p : piece.polygon)
       for (int k = 0; k < 2; ++k)
         low[k] = std::min(low[k], dot(p - edge.a, axes[k])), high[k] = std::max(high[k], dot(p - edge.a, axes[k]));
@@ -123,16 +123,16 @@ std::vector<CutEdge> edges_close_to(const FlatSurface& flat, const std::vector<C
   return result;
 }
 
-std::vector<std::vector<Piece>> cut_cell(const FlatSurface& flat, const std::vector<CutEdge>& edges,
-                                         const std::vector<Piece>& cell) {
-  std::vector<std::vector<Piece>> parts = {cell};
+std::vector<std::vector<CellPiece>> cut_cell(const FlatSurface& flat, const std::vector<CutEdge>& edges,
+                                             const std::vector<CellPiece>& cell) {
+  std::vector<std::vector<CellPiece>> parts = {cell};
   const double least = kPartMin * area_of(cell);
   for (const CutEdge& edge : edges) {
     if (share_within(flat, edge, cell) < kShared) continue;
     const Vec3d across = normalize(cross(flat.normal, edge.b - edge.a));
     for (std::size_t i = 0, count = parts.size(); i < count && parts.size() < kParts; ++i) {
       if (share_within(flat, edge, parts[i]) < kShared) continue;
-      std::vector<Piece> left = side_of(parts[i], edge.a, across), right = side_of(parts[i], edge.a, -across);
+      std::vector<CellPiece> left = side_of(parts[i], edge.a, across), right = side_of(parts[i], edge.a, -across);
       if (area_of(left) < least || area_of(right) < least) continue;
       parts[i] = std::move(left), parts.push_back(std::move(right));
     }

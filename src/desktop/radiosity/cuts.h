@@ -7,7 +7,7 @@
 namespace pocketray {
 
 // Part of a cell that lies on one triangle.
-struct Piece {
+struct CellPiece {
   Polygon polygon;
   std::uint32_t triangle;
 };
@@ -30,7 +30,7 @@ std::vector<CutEdge> find_cut_edges(const Scene& scene, const Surfaces& surfaces
 std::vector<CutEdge> edges_close_to(const FlatSurface& flat, const std::vector<CutEdge>& edges, double patch_side);
 
 // Divides a cell along the edges that run through it.
-std::vector<std::vector<Piece>> cut_cell(const FlatSurface& flat, const std::vector<CutEdge>& edges,
-                                         const std::vector<Piece>& cell);
+std::vector<std::vector<CellPiece>> cut_cell(const FlatSurface& flat, const std::vector<CutEdge>& edges,
+                                             const std::vector<CellPiece>& cell);
 
 }  // namespace pocketray

@@ -147,12 +147,12 @@ void set_albedo(const Scene& scene, const Material& m, Patch* patch) {
 }
 
 // Nothing is added for pieces without area.
-void add_cell(const Scene& scene, const FlatSurface& flat, const std::vector<Piece>& pieces,
+void add_cell(const Scene& scene, const FlatSurface& flat, const std::vector<CellPiece>& pieces,
               std::vector<Patch>* patches) {
   Patch patch = patch_of(scene, flat.material);
   patch.is_flat = true;
   std::vector<Facet> facets;
-  for (const Piece& piece : pieces) {
+  for (const CellPiece& piece : pieces) {
     const Polygon& p = piece.polygon;
     patch.pieces.push_back(p), patch.piece_triangles.push_back(piece.triangle);
     for (std::size_t i = 2; i < p.size(); ++i) {
@@ -172,7 +172,7 @@ void add_cells(const Scene& scene, const FlatSurface& flat, double side, const s
   const int columns = std::max(1, static_cast<int>(std::ceil(flat.width / side - 0.25)));
   const int rows = std::max(1, static_cast<int>(std::ceil(flat.height / side - 0.25)));
   const double width = flat.width / columns, height = flat.height / rows;
-  std::vector<std::vector<Piece>> cells(static_cast<std::size_t>(columns * rows));
+  std::vector<std::vector<CellPiece>> cells(static_cast<std::size_t>(columns * rows));
   for (std::uint32_t t : flat.triangles) {
     const Polygon whole = {corner_of(scene, t, 0), corner_of(scene, t, 1), corner_of(scene, t, 2)};
     double low[2] = {1e300, 1e300}, high[2] = {-1e300, -1e300};
@@ -192,8 +192,8 @@ void add_cells(const Scene& scene, const FlatSurface& flat, double side, const s
     }
   }
   const std::vector<CutEdge> close = edges_close_to(flat, edges, side);
-  for (const std::vector<Piece>& cell : cells)
-    for (const std::vector<Piece>& part : cut_cell(flat, close, cell)) add_cell(scene, flat, part, patches);
+  for (const std::vector<CellPiece>& cell : cells)
+    for (const std::vector<CellPiece>& part : cut_cell(flat, close, cell)) add_cell(scene, flat, part, patches);
 }
 
 void add_clusters(const Scene& scene, const Surfaces& surfaces, std::vector<Patch>* patches) {
@@ -251,7 +251,7 @@ std::vector<Patch> quarters_of(const Scene& scene, const Surfaces& surfaces, con
   std::vector<Patch> quarters;
   for (int q = 0; q < 4; ++q) {
     const Vec3d s = q & 1 ? flat.s : -flat.s, t = q & 2 ? flat.t : -flat.t;
-    std::vector<Piece> pieces;
+    std::vector<CellPiece> pieces;
     for (std::size_t i = 0; i < patch.pieces.size(); ++i) {
       const Polygon part = clip(clip(patch.pieces[i], patch.centre, s, 0), patch.centre, t, 0);
       if (part.size() >= 3) pieces.push_back({part, patch.piece_triangles[i]});

@@ -17,14 +17,14 @@ float slope(const float* values, std::uint32_t i, std::uint32_t count, std::size
   return (at[stride] - *(at - stride)) * 0.5f;
 }
 
-struct Range {
+struct ValueRange {
   float low, high;
 };
 
 // Returns the range of the values at a node and its neighbours.
-Range range_around(const RadiosityNode* nodes, std::uint32_t columns, std::uint32_t rows, std::uint32_t column,
-                   std::uint32_t row, int axis) {
-  Range range = {nodes[row * columns + column].value[axis], nodes[row * columns + column].value[axis]};
+ValueRange range_around(const RadiosityNode* nodes, std::uint32_t columns, std::uint32_t rows, std::uint32_t column,
+                        std::uint32_t row, int axis) {
+  ValueRange range = {nodes[row * columns + column].value[axis], nodes[row * columns + column].value[axis]};
   for (std::uint32_t y = row ? row - 1 : 0; y <= std::min(row + 1, rows - 1); ++y)
     for (std::uint32_t x = column ? column - 1 : 0; x <= std::min(column + 1, columns - 1); ++x) {
       const float value = nodes[y * columns + x].value[axis];
@@ -34,7 +34,7 @@ Range range_around(const RadiosityNode* nodes, std::uint32_t columns, std::uint3
 }
 
 // The largest share in [0, 1] of `step` that keeps value + share·step in the range.
-float share_within(const Range& range, float value, float step) {
+float share_within(const ValueRange& range, float value, float step) {
   if (step > range.high - value) return (range.high - value) / step;
   if (step < range.low - value) return (range.low - value) / step;
   return 1;
@@ -42,7 +42,7 @@ float share_within(const Range& range, float value, float step) {
 
 // Shortens the tangents of one node until its Bézier points f ± ds/3 ± dt/3 ± dst/9 are in the range. Only the
 // quadrants that have a patch count.
-void limit(const Range& range, bool left, bool right, bool below, bool above, float value, float* ds, float* dt,
+void limit(const ValueRange& range, bool left, bool right, bool below, bool above, float value, float* ds, float* dt,
            float* dst) {
   const float third = 1.0f / 3;
   auto limit_one = [&](float* tangent, bool before, bool after) {

@@ -15,7 +15,7 @@ struct Item {
   Box box;
   std::uint32_t triangle;
 };
-struct Range {
+struct ItemRange {
   std::uint32_t begin, count;
   Box box;
 };
@@ -86,7 +86,7 @@ Box box_of(const Item* items, std::uint32_t count) {
 }
 
 // Divides a range into up to four parts, each time splitting the one with the largest area × count.
-int part_in_four(Item* items, Range* ranges, bool halve) {
+int part_in_four(Item* items, ItemRange* ranges, bool halve) {
   int count = 1;
   while (count < 4) {
     int largest = -1;
@@ -96,7 +96,7 @@ int part_in_four(Item* items, Range* ranges, bool halve) {
       if (ranges[i].count > kLeafCountMax && cost > most) most = cost, largest = i;
     }
     if (largest < 0) break;
-    Range whole = ranges[largest];
+    ItemRange whole = ranges[largest];
     std::uint32_t left = part(items + whole.begin, whole.count, halve);
     CHECK(left > 0 && left < whole.count);
     ranges[largest] = {whole.begin, left, box_of(items + whole.begin, left)};
@@ -151,14 +151,14 @@ ReferenceWorld make_reference_world(const FrameData& frame, Arena* arena) {
   Array<Item> items = make_items(frame, arena, &world);
   struct Task {
     std::uint32_t node, depth;
-    Range range;
+    ItemRange range;
   } tasks[3 * kReferenceDepthMax + 1];
   std::uint32_t task_count = 1;
   tasks[0] = {0, 0, {0, triangle_count, box_of(items.data, triangle_count)}};
   while (task_count > 0) {
     Task task = tasks[--task_count];
     CHECK_LT(task.depth, kReferenceDepthMax);
-    Range ranges[4] = {task.range};
+    ItemRange ranges[4] = {task.range};
     int count = part_in_four(items.data, ranges, task.depth >= kHalveDepth);
     ReferenceNode& node = world.nodes[task.node];
     for (int i = 0; i < 4; ++i) {

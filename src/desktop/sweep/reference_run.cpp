@@ -12,7 +12,7 @@
 namespace pocketray {
 namespace {
 
-struct Run {
+struct ReferenceRun {
   const ReferenceGoal& goal;
   Rig* rig;
   Accumulation* accumulation;
@@ -20,11 +20,11 @@ struct Run {
   std::mutex mutex = {};
   std::vector<ReferencePiece> work = {};
 
-  Run(const ReferenceGoal& g, Rig* r, Accumulation* a) : goal(g), rig(r), accumulation(a), gauge(g, r, a) {}
+  ReferenceRun(const ReferenceGoal& g, Rig* r, Accumulation* a) : goal(g), rig(r), accumulation(a), gauge(g, r, a) {}
 };
 
 bool take_work(void* context, std::uint32_t, std::uint32_t i) {
-  Run* run = static_cast<Run*>(context);
+  ReferenceRun* run = static_cast<ReferenceRun*>(context);
   const ReferencePiece& work = run->work[i];
   accumulate(run->rig->reference, run->goal.transport, work.row, work.samples, run->accumulation);
   std::lock_guard<std::mutex> lock(run->mutex);
@@ -41,7 +41,7 @@ std::vector<ReferencePiece> missing_work(const Accumulation& accumulation, const
 }
 
 // Adds a batch to all rows that lack it, saving in between.
-Status take_batch(const SampleRange& samples, Run* run) {
+Status take_batch(const SampleRange& samples, ReferenceRun* run) {
   for (;;) {
     run->work = missing_work(*run->accumulation, samples);
     if (run->work.empty() || interrupted) return success();
@@ -51,7 +51,7 @@ Status take_batch(const SampleRange& samples, Run* run) {
 }
 
 // Takes the samples that the goal lacks with this process alone.
-Status take_alone(Run* run) {
+Status take_alone(ReferenceRun* run) {
   const ReferenceGoal& goal = run->goal;
   const std::uint32_t end = half_samples(goal), batch_count = (end + kReferenceBatch - 1) / kReferenceBatch;
   MeasureSchedule schedule;
@@ -74,7 +74,7 @@ Status run_reference(const ReferenceGoal& goal, Rig* rig, Accumulation* accumula
   CHECK(goal.samples > 0 || goal.until > 0);
   CHECK(goal.part >= 1 && goal.part <= goal.part_count);
   make_rig_reference(rig);
-  Run run(goal, rig, accumulation);
+  ReferenceRun run(goal, rig, accumulation);
   Status status = goal.team.size > 1 ? take_with_team(goal, rig, accumulation, &run.gauge) : take_alone(&run);
   end_progress(&run.gauge.progress);
   *whole = !interrupted;

@@ -29,7 +29,7 @@ namespace {
 constexpr int kBaselineRuns = 3;
 constexpr std::uint32_t kRoundsMax = 1000;
 
-struct Run {
+struct SweepRun {
   const AccuracyOptions& options;
   Rigs rigs;
   SweepPlan plan;
@@ -51,7 +51,7 @@ Json settings_json(const Quality& quality) {
   return settings;
 }
 
-Json key_of(const Run& run, const Rig& rig) {
+Json key_of(const SweepRun& run, const Rig& rig) {
   const AccuracyOptions& o = run.options;
   const CommonOptions& c = o.common;
   const Settings& settings = rig.baseline.settings;
@@ -84,7 +84,7 @@ Json key_of(const Run& run, const Rig& rig) {
 
 // Returns the picture in the rig's renderer as the screen shows it. *bytes_per_frame, unless null, receives the bytes
 // of its rows, in a build that can send them. After an interrupt *levels is meaningless.
-Status find_levels(const Run& run, Rig* rig, const Configuration& configuration, Levels* levels,
+Status find_levels(const SweepRun& run, Rig* rig, const Configuration& configuration, Levels* levels,
                    double* bytes_per_frame) {
   const Renderer& renderer = rig->opened.renderer;
   *levels = displayed_levels(renderer.image.data, renderer.settings.width, renderer.settings.height, renderer.exposure,
@@ -104,7 +104,7 @@ Status find_levels(const Run& run, Rig* rig, const Configuration& configuration,
 }
 
 // After an interrupt there are none.
-Status find_errors(const Run& run, Rig* rig, const SweepPoint& point, PointFigures* f) {
+Status find_errors(const SweepRun& run, Rig* rig, const SweepPoint& point, PointFigures* f) {
   const Renderer& renderer = rig->opened.renderer;
   std::uint32_t width = renderer.settings.width, height = renderer.settings.height;
   Levels levels;
@@ -144,7 +144,7 @@ struct RoundProgress {
 };
 
 // Measures each point once. After an interrupt *whole is false and the round's times are discarded.
-Status measure_round(Run* run, RoundProgress* progress, bool* whole) {
+Status measure_round(SweepRun* run, RoundProgress* progress, bool* whole) {
   CHECK_LT(run->state.rounds, run->options.rounds);
   std::map<std::size_t, std::vector<double>> times;
   for (std::size_t i : round_order(run->plan, run->state.rounds)) {
@@ -172,7 +172,7 @@ Status measure_round(Run* run, RoundProgress* progress, bool* whole) {
 }
 
 // A state from a file may lack points.
-Status check_state(const Run& run) {
+Status check_state(const SweepRun& run) {
   bool all = run.state.rounds <= kRoundsMax;
   for (std::size_t i : round_order(run.plan, 0)) {
     auto there = run.state.points.find(id_of(run.plan.points[i]));
@@ -184,7 +184,7 @@ Status check_state(const Run& run) {
                        run.options.folder.c_str());
 }
 
-Status measure_rounds(Run* run, bool* whole) {
+Status measure_rounds(SweepRun* run, bool* whole) {
   *whole = true;
   if (run->state.rounds >= run->options.rounds) return success();
   double price = 0;
@@ -201,7 +201,7 @@ Status measure_rounds(Run* run, bool* whole) {
   return status;
 }
 
-Status add_strip(Run* run, const SweptKnob& swept, Sweep* sweep, bool* whole) {
+Status add_strip(SweepRun* run, const SweptKnob& swept, Sweep* sweep, bool* whole) {
   CHECK_LE(swept.first + swept.count, sweep->measured.size());
   Strip strip;
   strip.knob = swept.knob->name;
@@ -235,7 +235,7 @@ Status add_strip(Run* run, const SweptKnob& swept, Sweep* sweep, bool* whole) {
 
 // Renders both references: the one that knobs are compared with, and the one that gives the converged model's error
 // against full transport.
-Status render_references(Run* run, Sweep* sweep, bool* whole) {
+Status render_references(SweepRun* run, Sweep* sweep, bool* whole) {
   Rig* rig;
   RETURN_IF_ERROR(reference_rig(&run->rigs, &rig));
   Transport kind = chosen(run->options), other_kind = other_than(kind);
@@ -274,7 +274,7 @@ Status check_options(const AccuracyOptions& o) {
   return success();
 }
 
-void describe(const Run& run, const Rig& rig, Sweep* sweep) {
+void describe(const SweepRun& run, const Rig& rig, Sweep* sweep) {
   const AccuracyOptions& o = run.options;
   const Settings& settings = rig.baseline.settings;
   sweep->scene = o.common.scene;
@@ -288,7 +288,7 @@ void describe(const Run& run, const Rig& rig, Sweep* sweep) {
 }
 
 // Counts instructions if the CPU does not and has counted none of this sweep.
-Status count_otherwise(Run* run, const Rig& rig, bool by_cpu, Sweep* sweep, bool* whole) {
+Status count_otherwise(SweepRun* run, const Rig& rig, bool by_cpu, Sweep* sweep, bool* whole) {
   for (const auto& point : run->state.points) by_cpu = by_cpu || std::isfinite(point.second.instructions_per_pixel);
   if (by_cpu && run->state.counted.empty()) return success();
   std::string note;
@@ -301,7 +301,7 @@ Status count_otherwise(Run* run, const Rig& rig, bool by_cpu, Sweep* sweep, bool
 
 Status measure_sweep(const AccuracyOptions& options, Sweep* sweep, bool* whole, SweptFront* front) {
   CHECK(sweep != nullptr && whole != nullptr);
-  Run run = {options, {options, {}}, {}, {}, {}, {}};
+  SweepRun run = {options, {options, {}}, {}, {}, {}, {}};
   *whole = true;
   RETURN_IF_ERROR(check_options(options));
   bool counts = platform::start_instruction_count();  // including later threads

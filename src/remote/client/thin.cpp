@@ -24,14 +24,10 @@ std::uint32_t asked_count(const Client& client, std::uint32_t row) {
   return count;
 }
 
-struct Run {
-  std::uint32_t begin = 0, end = 0;
-};
-
 // The longest run of missing rows in [begin, end) requested from exactly `count` servers.
-Run longest_run(const Client& client, std::uint32_t begin, std::uint32_t end, std::uint32_t count) {
+RowRange longest_run(const Client& client, std::uint32_t begin, std::uint32_t end, std::uint32_t count) {
   CHECK(begin <= end && end <= client.merge.rows.count);
-  Run best, run = {begin, begin};
+  RowRange best = {0, 0}, run = {begin, begin};
   for (std::uint32_t row = begin; row < end; ++row) {
     if (client.merge.rows[row].state != RowState::missing || asked_count(client, row) != count) {
       run = {row + 1, row + 1};
@@ -55,7 +51,7 @@ double speed_of(const Client& client, const RemoteServer& server) {
 }
 
 // Divides the run among idle servers by their speed.
-void divide(Client* client, const Run& run) {
+void divide(Client* client, const RowRange& run) {
   double speed_sum = 0, so_far = 0, rows = run.end - run.begin;
   for (std::uint32_t i = 0; i < client->server_count; ++i)
     if (is_idle(client->servers[i])) speed_sum += speed_of(*client, client->servers[i]);
@@ -75,22 +71,22 @@ void divide(Client* client, const Run& run) {
 
 // Returns the rows requested only from this server that another should render: all if it has fallen silent, otherwise
 // the upper half, which it would send last.
-Run rows_to_spare(const Client& client, const RemoteServer& server) {
-  Run run = longest_run(client, server.frame.row_begin, server.frame.row_end, 1);
+RowRange rows_to_spare(const Client& client, const RemoteServer& server) {
+  RowRange run = longest_run(client, server.frame.row_begin, server.frame.row_end, 1);
   double silent = static_cast<double>(client_now_ns(client) - std::max(server.frame.asked_ns, server.frame.heard_ns));
   double chunk_ns = static_cast<double>(server.row_ns.value) * kChunkRowsEven;
   if (silent > std::max(kSilentNsMin, kSilentChunks * chunk_ns)) return run;
   std::uint32_t rows = run.end - run.begin;
-  if (rows < 2 * kChunkRowsEven || !is_known(server.row_ns)) return Run();
+  if (rows < 2 * kChunkRowsEven || !is_known(server.row_ns)) return {0, 0};
   return {run.begin, run.begin + rows / 2};
 }
 
 void take_over(Client* client, RemoteServer* idle) {
   CHECK(is_idle(*idle));
-  Run best;
+  RowRange best = {0, 0};
   for (std::uint32_t i = 0; i < client->server_count; ++i) {
     if (!client->servers[i].frame.open) continue;
-    Run run = rows_to_spare(*client, client->servers[i]);
+    RowRange run = rows_to_spare(*client, client->servers[i]);
     if (run.end - run.begin > best.end - best.begin) best = run;
   }
   if (best.begin < best.end) ask_for_rows(client, idle, best.begin, best.end);
@@ -106,7 +102,7 @@ void ask_idle_servers(Client* client) {
     idle = idle || is_idle(*server);
   }
   if (!idle || client->complete) return;
-  Run run = longest_run(*client, 0, client->settings.height, 0);
+  RowRange run = longest_run(*client, 0, client->settings.height, 0);
   if (run.begin < run.end) divide(client, run);
   for (std::uint32_t i = 0; i < client->server_count; ++i)
     if (is_idle(client->servers[i])) take_over(client, &client->servers[i]);
