@@ -68,7 +68,7 @@ int run(const CommonOptions& options, bool prices) {
       print_animations(renderer);
       print_effects(renderer.effects);
       print_memory(renderer.memory);
-      const char* without = renderer.coherence_state.unplanned_because;
+      const char* without = renderer.history.state.unplanned_because;
       std::printf("coherence: %s%s\n", without ? "every frame is traced whole: " : "only what changes is traced",
                   without ? without : "");
     }
@@ -77,7 +77,7 @@ int run(const CommonOptions& options, bool prices) {
                    {"triangles", renderer.scene.triangles.count},
                    {"fits", status.ok},
                    {"accelerator", renderer.accel_info->name},
-                   {"coherence", renderer.coherence_state.planned},
+                   {"coherence", renderer.history.state.planned},
                    {"animations", animations_json(renderer)},
                    {"effects", effects_json(renderer.effects)},
                    {"memory", memory_json(renderer.memory)}};

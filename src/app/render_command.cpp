@@ -143,7 +143,7 @@ Status open_job(const RenderOptions& given, Opened* o) {
   RETURN_IF_ERROR(start_animation(renderer, &o->animation, job));
   if (leads(options->parts.team)) RETURN_IF_ERROR(start_journal(o->scene.source, *renderer, &o->journal, job));
   job->source = &o->scene.source;
-  if (renderer->coherence_state.planned && !job->servers) job->coherent = &o->coherent;  // otherwise the client uses it
+  if (renderer->history.state.planned && !job->servers) job->coherent = &o->coherent;  // otherwise the client uses it
   return success();
 }
 

@@ -58,7 +58,7 @@ Status render_with_progress(Renderer* renderer, const RenderJob& job, std::uint3
   SpanSource source = list_source(&bands);
   source.aov = job.asked.aov;
   source.stop = &interrupted;
-  return render_frame(renderer, seconds, source, complete);
+  return render_frame(renderer, {seconds, FramePurpose::whole, source}, complete);
 }
 
 void pack_page(Renderer* renderer, const RenderJob& job) {

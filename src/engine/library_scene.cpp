@@ -251,7 +251,7 @@ pocketray_result pocketray_measure_exposure(pocketray_instance* instance, double
   REFUSE_IF_ERROR(POCKETRAY_ERROR_ARGUMENT, check_limit(Quantity::seconds, seconds));
   Renderer* renderer = &instance->renderer;
   instance->refining = false;
-  REFUSE_IF_ERROR(POCKETRAY_ERROR_SCENE, prepare_frame(renderer, seconds));
+  REFUSE_IF_ERROR(POCKETRAY_ERROR_SCENE, begin_frame(renderer, {seconds}));
   renderer->exposure = measure_exposure(renderer);
   if (exposure) *exposure = renderer->exposure;
   return POCKETRAY_OK;

@@ -68,7 +68,7 @@ Status change_material(Renderer* renderer, std::uint32_t index, const Material& 
     return failure("materials[%u] calls for the effect %s, the scene as opened does not: open with effects auto,%s",
                    index, name, name);
   }
-  recolor(&renderer->coherence, index, before, material, renderer->scene);
+  recolor(&renderer->history.coherence, index, before, material, renderer->scene);
   renderer->lit_mask = ~EffectMask(0);  // place lights again
   return success();
 }

@@ -8,9 +8,9 @@
 #include "base/fmath.h"
 #include "base/limit_list.h"
 #include "brdf/brdf_list.h"
-#include "engine/coherent.h"
 #include "engine/exposure.h"
 #include "engine/frame.h"
+#include "engine/prepare.h"
 #include "engine/recolor.h"
 #include "plan/place_light_polygons.h"
 #include "plan/plan_effects.h"
@@ -94,7 +94,7 @@ Status adopt_or_build(Renderer* renderer) {
 
 Status plan_with(Renderer* renderer, const AccelInfo& accel, const SceneStorage& storage, const OutputNeed& output) {
   renderer->accel_info = &accel;
-  CoherenceState* coherence = &renderer->coherence_state;
+  CoherenceState* coherence = &renderer->history.state;
   SceneStorage stored = storage;
   stored.recolorable = recolorable_count(*renderer);
   Status status = plan_memory(renderer->scene, renderer->settings, renderer->effects, accel, stored,
@@ -219,8 +219,8 @@ Status build_renderer_unexposed(Renderer* renderer) {
   for (std::uint32_t row = 0; row < renderer->settings.height; ++row)
     renderer->spans[row] = {static_cast<std::uint16_t>(row), 0, static_cast<std::uint16_t>(renderer->settings.width)};
   renderer->exposure = renderer->scene.info.exposure;
-  RETURN_IF_ERROR(prepare_frame(renderer, 0));
-  make_coherent(renderer);
+  RETURN_IF_ERROR(begin_frame(renderer, {0}));
+  make_history(renderer);
   return success();
 }
 
@@ -305,8 +305,8 @@ Tracer total_counts(const Renderer& renderer) {
 bool probe_exposure(Renderer* renderer, ExposureProbe* p, std::uint32_t pixel_count_max, std::uint32_t* pixel_count,
                     float* exposure) {
   CHECK(pixel_count != nullptr && exposure != nullptr);
-  forget_frame(&renderer->coherence);  // the probe leaves its pixels in the image
-  constexpr float kGrey = 0.18f;       // the key of [Reinhard et al. 2002] sec. 3
+  forget_last_frame(&renderer->history);  // the probe leaves its pixels in the image
+  constexpr float kGrey = 0.18f;          // the key of [Reinhard et al. 2002] sec. 3
   // Chosen: every hundredth pixel, 768 of 320×240. More would delay the first frame, fewer would miss small lights.
   constexpr std::uint32_t kStep = 10;
   auto places = [](std::uint32_t side) { return (side + kStep / 2 - 1) / kStep; };

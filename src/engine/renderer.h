@@ -1,39 +1,15 @@
 // Renderer: one scene, planned and accelerated in one block of memory, ready to render frames. It allocates nothing.
 #pragma once
-#include "engine/coherence_trial.h"
+#include "engine/history.h"
 #include "engine/pace.h"
 #include "plan/plan_memory.h"
 #include "scene/animate.h"
 #include "scene/content_hash.h"
-#include "shade/trace_spans.h"
-#include "temporal/coherence.h"
 
 namespace pocketray {
 
 struct Timings {
   double build_ms = 0, pose_ms = 0, refit_ms = 0, trace_ms = 0;
-};
-
-// How the last coherent frame was traced.
-struct CoherenceState {
-  bool planned = false;
-  const char* unplanned_because = "coherence is off";
-  const char* whole_because = nullptr;  // why all pixels were traced; null: only those that may have changed
-  std::uint64_t pixels_traced = 0;
-  ChangeCounts search;  // rays traced to find these
-  double follow_ms = 0, find_ms = 0, keep_ms = 0;
-  CoherenceTrial trial;  // for CoherenceMode::automatic
-};
-
-// The rows of a frame that this renderer may trace; shared_rows.h.
-struct SharedRows {
-  std::uint32_t begin = 0, end = 0;
-  bool records = false;             // the frame is followed
-  bool searched = false;            // the search for changes is complete
-  std::uint32_t tile_row = 0;       // the next to search
-  std::uint32_t known_rows = 0;     // of the last frame ...
-  std::uint64_t known_changes = 0;  // ... and pixels to trace in these
-  Span parts[2 * kThreadCountMax];  // parts of a row, or rows far apart
 };
 
 // Overrides of the scene's look; initially none.
@@ -90,9 +66,7 @@ struct Renderer {
   std::uint32_t animation = 0;  // the one that plays; kNone: the rest pose
   float exposure = 1;
   Timings timings;
-  Coherence coherence;  // set up if planned
-  CoherenceState coherence_state;
-  SharedRows shared_rows;
+  History history;
   Pace pace;                   // of an emulated device; default: none
   Workers* workers = nullptr;  // null: the caller's thread alone
   Light default_lights[2];

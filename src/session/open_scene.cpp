@@ -154,8 +154,8 @@ void print_notes(const OpenScene& opened) {
   if (info.default_lights == 0 && light != LightChoice::key)
     std::fprintf(stderr, "pocketray: --light changes nothing: the scene or its environment has light\n");
   const Renderer& renderer = opened.renderer;
-  if (renderer.settings.coherence == CoherenceMode::on && !renderer.coherence_state.planned)
-    std::fprintf(stderr, "pocketray: --coherence on has no effect: %s\n", renderer.coherence_state.unplanned_because);
+  if (renderer.settings.coherence == CoherenceMode::on && !renderer.history.state.planned)
+    std::fprintf(stderr, "pocketray: --coherence on has no effect: %s\n", renderer.history.state.unplanned_because);
   if (renderer.scene.triangles.empty()) return;  // a server has the scene
   const UnusedSettings unused = find_unused_settings(renderer.scene, opened.asked);
   for (int i = 0; i < unused.count; ++i) print_note(unused.notes[i]);

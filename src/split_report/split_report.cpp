@@ -26,11 +26,11 @@ struct WholeFrames {
   CoherenceMode mode;
   CoherenceState state;
   explicit WholeFrames(Renderer* renderer)
-      : device(renderer), mode(renderer->settings.coherence), state(renderer->coherence_state) {
+      : device(renderer), mode(renderer->settings.coherence), state(renderer->history.state) {
     device->settings.coherence = CoherenceMode::off;
-    device->coherence_state = CoherenceState();
+    device->history.state = CoherenceState();
   }
-  ~WholeFrames() { device->settings.coherence = mode, device->coherence_state = state; }
+  ~WholeFrames() { device->settings.coherence = mode, device->history.state = state; }
 };
 
 struct Experiment {

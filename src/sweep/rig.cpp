@@ -86,7 +86,7 @@ Status open_with(const AccuracyOptions& options, const CommonOptions& common, st
   RETURN_IF_ERROR(start_scene(&rig->opened, common));
   Renderer* renderer = &rig->opened.renderer;
   RETURN_IF_ERROR(change_settings(renderer, rig->baseline.settings));
-  RETURN_IF_ERROR(prepare_frame(renderer, options.seconds));
+  RETURN_IF_ERROR(begin_frame(renderer, {options.seconds}));
   ExposureChoice choice;
   float factor;
   RETURN_IF_ERROR(parse_exposure(common.exposure, &choice, &factor));
@@ -147,7 +147,7 @@ std::uint32_t take_part(Rig* rig) {
 Status time_frame(Rig* rig, const Configuration& configuration, double seconds, double* ns_per_pixel) {
   Renderer* renderer = &rig->opened.renderer;
   RETURN_IF_ERROR(change_settings(renderer, configuration.settings));
-  RETURN_IF_ERROR(prepare_frame(renderer, seconds));  // a change of settings does not count towards the frame
+  RETURN_IF_ERROR(begin_frame(renderer, {seconds}));  // a change of settings does not count towards the frame
   std::uint64_t start = clock_ns();
   RETURN_IF_ERROR(render_frame(renderer, seconds, Aov::none, &interrupted));
   double frame_ns = static_cast<double>(clock_ns() - start);
@@ -171,9 +171,9 @@ Status count_instructions(Rig* rig, const Configuration& configuration, double s
   if (start == 0) return success();
   Renderer* renderer = &rig->opened.renderer;
   RETURN_IF_ERROR(change_settings(renderer, configuration.settings));
-  RETURN_IF_ERROR(prepare_frame(renderer, seconds));
+  RETURN_IF_ERROR(begin_frame(renderer, {seconds}));
   start = platform::instruction_count();
-  RETURN_IF_ERROR(prepare_frame(renderer, seconds));  // prepares again, so that this is not counted
+  RETURN_IF_ERROR(begin_frame(renderer, {seconds}));  // prepares again, so that this is not counted
   std::uint64_t prepared = platform::instruction_count();
   double ns_per_pixel;
   RETURN_IF_ERROR(time_frame(rig, configuration, seconds, &ns_per_pixel));

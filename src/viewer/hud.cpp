@@ -26,7 +26,7 @@ void add_effects(const EffectPlan& plan, HudText* text) {
 
 // Adds how much of the last frame was traced.
 void add_coherence(const Renderer& renderer, HudText* text) {
-  const CoherenceState& state = renderer.coherence_state;
+  const CoherenceState& state = renderer.history.state;
   if (!state.planned) return;
   if (state.whole_because) {
     char line[200];
@@ -46,7 +46,7 @@ void write_hud(const Renderer& renderer, const Progressive& progressive, CameraM
   text->line_count = 0;
   CHECK_GE(renderer.settings.threads, 1u);
   Tracer counts = total_counts(renderer);
-  const ChangeCounts& search = renderer.coherence_state.search;
+  const ChangeCounts& search = renderer.history.state.search;
   std::uint64_t rays = search.moving_rays + search.static_rays;
   for (std::uint64_t n : counts.rays) rays += n;
   double ns_per_pixel = progressive.pixels_traced

@@ -93,7 +93,7 @@ void save_screenshot(Viewer* viewer, Renderer* renderer) {
 
 // Toggles the overlay of traced pixels, or tells why there is none.
 void answer_traced(Viewer* viewer, const Renderer& renderer) {
-  const CoherenceState& coherence = renderer.coherence_state;
+  const CoherenceState& coherence = renderer.history.state;
   char told[200];
   if (!coherence.planned) {
     viewer->traced = false;

@@ -302,12 +302,12 @@ TEST_CASE("instant_radiosity_is_not_followed_by_tables") {
   Room room(true);
   Settings settings = instant_settings(64);
   settings.coherence = CoherenceMode::on;
-  CHECK(rendered(room.scene, settings)->renderer.coherence_state.planned);
+  CHECK(rendered(room.scene, settings)->renderer.history.state.planned);
   settings.coherence_by_tables = true;
   std::unique_ptr<TestRenderer> t = rendered(room.scene, settings);
-  CHECK_FALSE(t->renderer.coherence_state.planned);
-  REQUIRE(t->renderer.coherence_state.unplanned_because != nullptr);
-  CHECK(std::string(t->renderer.coherence_state.unplanned_because).find("pixels share light") != std::string::npos);
+  CHECK_FALSE(t->renderer.history.state.planned);
+  REQUIRE(t->renderer.history.state.unplanned_because != nullptr);
+  CHECK(std::string(t->renderer.history.state.unplanned_because).find("pixels share light") != std::string::npos);
 }
 
 // Goal: virtual lights that memory was not planned for are refused.

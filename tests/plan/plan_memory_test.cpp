@@ -124,7 +124,7 @@ TEST_CASE("plan_memory_refusal_names_what_fits") {
     settings.memory_bytes = std::strtoul(message.c_str() + at + 2, nullptr, 10) << 20;
     auto test = make_renderer(generated->scene, settings, nullptr, &status);
     REQUIRE(test);
-    CHECK(prepare_frame(&test->renderer, 0).ok);
+    CHECK(begin_frame(&test->renderer, {0}).ok);
   }
 }
 

@@ -42,7 +42,7 @@ Device& device_of(const FaultPlan& plan) {
     device.whole = make_renderer(device.built->scene, settings);
     settings.coherence = CoherenceMode::automatic;
     device.renderer = make_renderer(device.built->scene, settings);
-    REQUIRE(device.renderer->renderer.coherence_state.planned);
+    REQUIRE(device.renderer->renderer.history.state.planned);
   }
   return device;
 }

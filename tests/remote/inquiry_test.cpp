@@ -130,7 +130,7 @@ TEST_CASE("inquiry_view_is_what_a_device_would_see") {
         REQUIRE(set_camera(renderer, query.camera).ok);
       }
       renderer->exposure = renderer->scene.info.exposure;
-      REQUIRE(prepare_frame(renderer, 0).ok);
+      REQUIRE(begin_frame(renderer, {0}).ok);
       if (round > 0) renderer->exposure = measure_exposure(renderer);
       ViewEntry entry;
       Status status = ask_view(&rig.inquiry, query, &entry);

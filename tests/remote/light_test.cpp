@@ -61,7 +61,7 @@ TEST_CASE("light_map_has_the_light_of_the_frame") {
           CHECK(map.frame == frame);
           const std::unique_ptr<BuiltScene> built = build_builtin(scene);
           const std::unique_ptr<TestRenderer> here = make_renderer(built->scene, q.settings);
-          REQUIRE(prepare_frame(&here->renderer, q.seconds).ok);
+          REQUIRE(begin_frame(&here->renderer, {q.seconds}).ok);
           const LightGrid grid = light_grid(q.settings, pitch);
           std::vector<Vec3> got(light_count(grid));
           REQUIRE(decode_light(map.bytes.data, map.bytes.count, grid.columns, grid.rows, got.data()));

@@ -315,9 +315,9 @@ TEST_CASE("limits_hold_for_frames") {
   settings.width = 16, settings.height = 12;
   std::unique_ptr<TestRenderer> test = make_renderer(built->scene, settings);
   Renderer* renderer = &test->renderer;
-  for (double good : {0.0, -kSecondsMax, kSecondsMax}) CHECK(prepare_frame(renderer, good).ok);
+  for (double good : {0.0, -kSecondsMax, kSecondsMax}) CHECK(begin_frame(renderer, {good}).ok);
   for (double bad : {kNan, kInf, -kInf, 2e9, -2e9, 1e300}) {
-    Status status = prepare_frame(renderer, bad);
+    Status status = begin_frame(renderer, {bad});
     CHECK(!status.ok);
     CHECK(std::strstr(status.message, "seconds") != nullptr);
   }

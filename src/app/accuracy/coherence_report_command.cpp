@@ -42,9 +42,9 @@ Status plan_way(Way way, const ReportOptions& o, std::uint32_t table, Renderer* 
     return failure(
         "--compare traces single pixels, but with virtual lights or shadows from the environment they depend on "
         "others: add --indirect none, or --environment-shadows 0");
-  if (way == Way::frame_by_frame || renderer->coherence_state.planned) return success();
+  if (way == Way::frame_by_frame || renderer->history.state.planned) return success();
   if ((renderer->effects.mask & (way == Way::by_tables ? kNotInTables : kNotFollowed)) != 0)
-    return failure("coherence does not follow these frames: %s", renderer->coherence_state.unplanned_because);
+    return failure("coherence does not follow these frames: %s", renderer->history.state.unplanned_because);
   const CoherencePlan plan = coherence_plan(*settings, renderer->light_point_count_max, renderer->light_polygons.count);
   std::size_t bytes = renderer->memory.total_bytes + coherence_need(renderer->scene, renderer->effects.mask, plan) +
                       coherence_scratch_need(renderer->scene, renderer->effects.mask);

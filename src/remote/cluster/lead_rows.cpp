@@ -159,7 +159,7 @@ Slice ClusterLead::trace(Session* session, std::uint64_t slice_ns) {
   CHECK_EQ(slot->job_number, session->job_number);
   RowShare* share = &slot->share;
   if (!slot->is_begun) {
-    slot->keeps_rows = session->renderer.shared_rows.records;
+    slot->keeps_rows = session->renderer.history.records;
     begin_row_share(job.request, slot->keeps_rows, share);
     slot->is_begun = true;
   }

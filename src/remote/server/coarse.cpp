@@ -66,7 +66,6 @@ Slice trace_coarse(Session* session, std::uint64_t slice_ns) {
                                                          session->trace_ns * threads, slice_ns * threads)
                                           : kFirstPixels * threads;
   SpanSource source = {&part, next_part, [](void*, const SpanBatch&) { return true; }};
-  source.is_coherent = true;
   trace_frame(renderer, source);
   Slice slice = {};
   slice.is_coarse = true;

@@ -144,7 +144,6 @@ Status plan(Session* session, const JobTools& tools, WireError* code) {
   }
   if (session->job.request.light_pitch > 0) RETURN_IF_ERROR(check_light_map(*session));
   if (!is_built_for(*session)) return plan_memory(session, tools, code);
-  end_shared_rows(&session->renderer);  // while it has the last frame's geometry
   session->job.stage = after_build(*session);
   if (session->own_exposure > 0) return success();
   // Its measurement was abandoned for another request: restart it.
@@ -152,7 +151,7 @@ Status plan(Session* session, const JobTools& tools, WireError* code) {
   session->renderer.camera_overridden = false;
   session->renderer.animation = 0;
   session->renderer.exposure = session->renderer.scene.info.exposure;
-  return prepare_frame(&session->renderer, 0);
+  return begin_frame(&session->renderer, {0});
 }
 
 // Sets the requested view and time.
@@ -169,14 +168,16 @@ Status aim(Session* session) {
   if (job->is_view_query) {
     // Like build_renderer(), but from the camera's position.
     renderer->exposure = renderer->scene.info.exposure;
-    RETURN_IF_ERROR(prepare_frame(renderer, 0));
+    RETURN_IF_ERROR(begin_frame(renderer, {0}));
     job->stage = JobStage::view_exposure;
     return job->measure_exposure || wants_exposure(*renderer) ? success() : answer_view_query(session);
   }
   renderer->exposure = job->request.exposure > 0 ? job->request.exposure : session->own_exposure;
-  RETURN_IF_ERROR(prepare_frame(renderer, job->request.seconds));
-  job->stage = JobStage::light;
-  if (job->request.light_pitch == 0) begin_job_rows(session);
+  const bool has_light = job->request.light_pitch > 0;
+  FrameTask task = {job->request.seconds, has_light ? FramePurpose::shared_light : FramePurpose::shared_rows};
+  task.rows = {job->request.row_begin, job->request.row_end};
+  RETURN_IF_ERROR(begin_frame(renderer, task));
+  job->stage = has_light ? JobStage::light : JobStage::search;
   return success();
 }
 
@@ -203,12 +204,6 @@ Status probe(Session* session, std::uint64_t slice_ns, Slice* slice) {
 }
 
 }  // namespace
-
-void begin_job_rows(Session* session) {
-  const FrameRequest& request = session->job.request;
-  begin_shared_rows(&session->renderer, request.row_begin, request.row_end);
-  session->job.stage = JobStage::search;
-}
 
 Status step_job(Session* session, const JobTools& tools, std::uint64_t slice_ns, Slice* slice, WireError* code) {
   CHECK(has_job(*session));

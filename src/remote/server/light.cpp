@@ -108,7 +108,10 @@ void send_light(Session* session) {
   job->has_light = false, job->sent_light = true;
   job->work_ns = job->pixel_count = 0;
   job->coarse_row = job->coarse_column = 0;
-  if (has_rows(job->traced)) return begin_job_rows(session);
+  if (has_rows(job->traced)) {
+    job->stage = JobStage::search;
+    return;
+  }
   ++session->frame_count;
   drop_job(session);
 }

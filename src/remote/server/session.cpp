@@ -244,7 +244,6 @@ Slice trace_slice(Session* session, std::uint64_t slice_ns) {
   SliceSource source;
   source.session = session, source.slice_ns = slice_ns;
   SpanSource spans = {&source, next_slice, [](void*, const SpanBatch&) { return true; }};
-  spans.is_coherent = true;
   trace_frame(&session->renderer, spans);
   if (session->job.codes_beside) send_chunks(session);  // no pixel had to be traced
   return source.slice;

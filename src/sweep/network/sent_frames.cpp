@@ -30,7 +30,7 @@ Status send_frames(Rig* rig, const Configuration& configuration, double seconds,
   CHECK_EQ(rig->part_pixels, 0u);
   Renderer* renderer = &rig->opened.renderer;
   RETURN_IF_ERROR(change_settings(renderer, configuration.settings));
-  RETURN_IF_ERROR(prepare_frame(renderer, seconds));  // returns the camera to the scene's
+  RETURN_IF_ERROR(begin_frame(renderer, {seconds}));  // returns the camera to the scene's
   const OutputFormat& output = kOutputFormats[configuration.output];
   const std::uint32_t width = renderer->settings.width, height = renderer->settings.height;
   RowStream stream;

@@ -60,7 +60,7 @@ void forget(ReferenceView* view) {
 Status prepare_reference(ReferenceView* view, Renderer* renderer, double seconds) {
   const Settings before = renderer->settings;
   RETURN_IF_ERROR(change_settings(renderer, reference_settings(before)));
-  Status status = prepare_frame(renderer, seconds);
+  Status status = begin_frame(renderer, {seconds});
   if (status.ok) {
     view->frame = renderer->frame;
     view->lights.assign(renderer->frame.lights.begin(), renderer->frame.lights.end());

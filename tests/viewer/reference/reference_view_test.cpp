@@ -92,7 +92,7 @@ TEST_CASE("side_by_side_shows_picture_and_reference") {
       Settings own = plain;
       own.normals = NormalMode::as_scene;
       REQUIRE(change_settings(s.renderer, own).ok);
-      REQUIRE(prepare_frame(s.renderer, 0.4).ok);
+      REQUIRE(begin_frame(s.renderer, {0.4}).ok);
       std::uint32_t other = 0;
       for (std::uint32_t y = 0; y < 16; ++y)
         for (std::uint32_t x = 0; x < 24; ++x) {
@@ -123,7 +123,7 @@ TEST_CASE("side_by_side_begins_anew_when_the_view_changes") {
   CHECK(kReferenceView.samples(*s.side_by_side) == 0);
   s.refine(4, 0);
   const Vec3* shown = kReferenceView.picture(s.side_by_side, *s.renderer);
-  REQUIRE(prepare_frame(s.renderer, 0).ok);
+  REQUIRE(begin_frame(s.renderer, {0}).ok);
   CHECK(unlike_reference(s, Transport::model, shown) == 0);
   kReferenceView.forget(s.side_by_side);
   shown = kReferenceView.picture(s.side_by_side, *s.renderer);
