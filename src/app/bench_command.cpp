@@ -66,7 +66,7 @@ Json to_json(const CommonOptions& options, const Renderer& renderer, Measurement
           {"rays_per_second", rays_per_second(*m)},
           {"nodes_visited", m->counts.stats.nodes},
           {"triangles_tested", m->counts.stats.triangles},
-          {"memory", memory_json(renderer.memory)},
+          {"memory", memory_json(renderer.memory.plan)},
           {"effects", effects},
           {"build_ms", renderer.timings.build_ms},
           {"pose_ms", range_of(m->pose_ms.data(), m->frame_count).median},
@@ -102,7 +102,7 @@ void print_table(const CommonOptions& options, const Renderer& renderer, Measure
     double price = m->effect_price[static_cast<int>(row.effect)];
     if (std::isfinite(price)) std::printf("  %-22s %10.0f\n", row.name, price);
   }
-  print_memory(renderer.memory);
+  print_memory(renderer.memory.plan);
 }
 
 Json sparse_json(const SparseCost* costs) {

@@ -177,7 +177,7 @@ Status run_image_space(Renderer* renderer, const FrameRange& range, Progress* pr
       CHECK_LE(traced, (std::uint64_t(count) + 1) * whole[0].size());
       add(cost, &f->cost), f->traced += traced;
       for (std::uint32_t k = 1; k <= count; ++k)
-        add_errors(whole[k], group[k], run->width, run->height, renderer->exposure, &f->errors);
+        add_errors(whole[k], group[k], run->width, run->height, renderer->view.exposure, &f->errors);
       show_progress(progress, done += count);
     }
     if (interrupted) break;

@@ -157,9 +157,9 @@ void make_room(const CoherencePair& pair, const FrameRange& range, Batch* batch,
   const std::size_t pixels = std::size_t(renderer.settings.width) * renderer.settings.height;
   run->range = range;
   run->width = renderer.settings.width, run->height = renderer.settings.height;
-  for (int i = 0; i < renderer.memory.part_count; ++i)
-    if (std::strcmp(renderer.memory.parts[i].name, "coherence") == 0)
-      run->coherence_bytes = renderer.memory.parts[i].bytes;
+  for (int i = 0; i < renderer.memory.plan.part_count; ++i)
+    if (std::strcmp(renderer.memory.plan.parts[i].name, "coherence") == 0)
+      run->coherence_bytes = renderer.memory.plan.parts[i].bytes;
   run->table_bytes = renderer.history.coherence.tables.words.bytes();
   run->frames.reserve(std::size_t(range.last) - range.first + 1);
   for (std::uint32_t frame : kFigureFrames)
@@ -223,7 +223,7 @@ Status run_sequence(const CoherencePair& pair, const FrameRange& range, Progress
     const std::uint64_t before = done + 2 * (first - range.first);
     status =
         render_batch(pair, static_cast<std::uint32_t>(first), frame_count, before, progress, &batch, run, &finished);
-    if (status.ok) status = keep_batch(finished, pair.coherent->exposure, &batch, run);
+    if (status.ok) status = keep_batch(finished, pair.coherent->view.exposure, &batch, run);
     complete = finished == frame_count;
   }
   unseal_memory();

@@ -36,7 +36,7 @@ bool finish_spans(void* context, const SpanBatch& batch) {
 }  // namespace
 
 Status begin_frame(Renderer* renderer, const FrameTask& task) {
-  CHECK(renderer->accel_info != nullptr && renderer->image.data != nullptr);  // it has been built
+  CHECK(renderer->accel.info != nullptr && renderer->image.data != nullptr);  // it has been built
   RETURN_IF_ERROR(check_limit(Quantity::seconds, task.seconds));
   end_frame(renderer);  // while the geometry is its own
   const Clock& clock = *renderer->pace.clock;

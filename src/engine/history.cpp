@@ -151,9 +151,9 @@ void end_rows(Renderer* renderer) {
 void make_history(Renderer* renderer) {
   if (!renderer->history.state.planned) return;
   make_coherence(renderer->frame,
-                 coherence_plan(renderer->settings, renderer->light_point_count_max, renderer->light_polygons.count,
+                 coherence_plan(renderer->settings, renderer->lights.point_count_max, renderer->lights.polygons.count,
                                 recolorable_count(*renderer)),
-                 &renderer->persistent_arena, &renderer->frame_arena, &renderer->history.coherence);
+                 &renderer->memory.persistent, &renderer->memory.frame, &renderer->history.coherence);
 }
 
 void begin_history(Renderer* renderer, const FrameTask& task) {
@@ -187,7 +187,7 @@ void end_frame(Renderer* renderer) {
   History* h = &renderer->history;
   if (!h->is_open) return;
   if (h->records)
-    stop_recording(*renderer->accel_info, &renderer->frame, renderer->tracers);
+    stop_recording(*renderer->accel.info, &renderer->frame, renderer->tracers);
   else
     renderer->frame.first_hits = nullptr;
   if (h->purpose == FramePurpose::changes) end_changes(renderer);

@@ -73,7 +73,8 @@ struct History {
 
 // Returns whether the pixels of the frame in progress are traced for the frame that will be kept.
 inline bool is_followed(const History& history) {
-  return history.is_open && (history.purpose == FramePurpose::changes || history.purpose == FramePurpose::shared_rows);
+  return history.is_open &&
+         (history.purpose == FramePurpose::changes || history.purpose == FramePurpose::shared_rows);
 }
 
 // Has the next frame traced whole.

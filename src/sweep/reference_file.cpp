@@ -30,7 +30,7 @@ std::string camera_text(const CameraRays& c) {
 const char* name_of(Transport transport) { return transport == Transport::model ? "model" : "physical"; }
 
 Status prepare_for_reference(double seconds, Rig* rig) {
-  CHECK(rig != nullptr && rig->opened.renderer.accel_info != nullptr);  // opened
+  CHECK(rig != nullptr && rig->opened.renderer.accel.info != nullptr);  // opened
   RETURN_IF_ERROR(change_settings(&rig->opened.renderer, reference_settings(rig->baseline.settings)));
   return begin_frame(&rig->opened.renderer, {seconds});
 }

@@ -54,12 +54,12 @@ Settings dearest(const Scene& scene, Settings settings) {
 }
 
 Status load_cornell(std::uint32_t sphere_columns, Renderer* renderer, SceneStorage* storage) {
-  if (tessellated_cornell_need(sphere_columns) > arena_free(renderer->scene_arena))
+  if (tessellated_cornell_need(sphere_columns) > arena_free(renderer->memory.scene))
     return failure("cornell with a sphere of %u columns does not fit in --memory: raise it", sphere_columns);
-  build_tessellated_cornell(sphere_columns, &renderer->scene_arena, &renderer->scene);
-  CHECK_LE(renderer->scene_arena.used, tessellated_cornell_need(sphere_columns));
+  build_tessellated_cornell(sphere_columns, &renderer->memory.scene, &renderer->scene);
+  CHECK_LE(renderer->memory.scene.used, tessellated_cornell_need(sphere_columns));
   *storage = SceneStorage();
-  storage->arena_bytes = renderer->scene_arena.used;
+  storage->arena_bytes = renderer->memory.scene.used;
   return success();
 }
 
@@ -73,10 +73,10 @@ Status open_with(const AccuracyOptions& options, const CommonOptions& common, st
   hooks.loaded = [&](const SceneSource& source, Renderer* renderer) {
     rig->baseline.settings = renderer->settings;
     rig->scene_hash = hash_of(source, renderer->scene);
-    if (renderer->animation != 0) rig->scene_hash += ", animation " + common.animation;
+    if (renderer->view.animation != 0) rig->scene_hash += ", animation " + common.animation;
     ContentHash identity;
     const bool has_own_look = common.background.empty() && common.environment.empty() &&
-                              common.light == CommonOptions().light && renderer->animation == 0;
+                              common.light == CommonOptions().light && renderer->view.animation == 0;
     if (has_own_look && identify_scene(source, renderer, &identity).ok)
       rig->front_path = front_path(common.scene, identity);
     renderer->settings = dearest(renderer->scene, renderer->settings);
@@ -91,8 +91,8 @@ Status open_with(const AccuracyOptions& options, const CommonOptions& common, st
   float factor;
   RETURN_IF_ERROR(parse_exposure(common.exposure, &choice, &factor));
   if (renderer->scene.info.auto_exposure == 0) return success();
-  renderer->exposure = measure_exposure(renderer);
-  return change_exposure(factor, &renderer->exposure);
+  renderer->view.exposure = measure_exposure(renderer);
+  return change_exposure(factor, &renderer->view.exposure);
 }
 
 // Number of whole-picture rows with as many pixels as a frame.
@@ -157,7 +157,7 @@ Status time_frame(Rig* rig, const Configuration& configuration, double seconds, 
       line_bytes = width * output.format.bits_per_pixel / 8;
   rig->packed.resize((static_cast<std::size_t>(line_bytes) * renderer->settings.height + 3) / 4);
   start = clock_ns();
-  pack_rows(renderer->image.data, width, height, 0, static_cast<int>(row_count(*rig)), renderer->exposure,
+  pack_rows(renderer->image.data, width, height, 0, static_cast<int>(row_count(*rig)), renderer->view.exposure,
             output.format, Rotation::none, output.dither, rig->packed.data(), line_bytes);
   double pack_ns = static_cast<double>(clock_ns() - start);
   *ns_per_pixel = (frame_ns + pack_ns) / static_cast<double>(renderer->image.count);

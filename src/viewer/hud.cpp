@@ -63,8 +63,8 @@ void write_hud(const Renderer& renderer, const Progressive& progressive, CameraM
   add_hud_line(text, "%.0fk rays  %.2f M/s  %.0fk skipped", static_cast<double>(rays) * 1e-3,
                progressive.trace_ns ? static_cast<double>(rays) * 1e3 / static_cast<double>(progressive.trace_ns) : 0.0,
                static_cast<double>(counts.rays_left_out) * 1e-3);
-  add_hud_line(text, "%.1f of %.0f MiB  %s camera%s", static_cast<double>(renderer.memory.total_bytes) / (1 << 20),
-               static_cast<double>(renderer.memory.limit_bytes) / (1 << 20),
+  add_hud_line(text, "%.1f of %.0f MiB  %s camera%s", static_cast<double>(renderer.memory.plan.total_bytes) / (1 << 20),
+               static_cast<double>(renderer.memory.plan.limit_bytes) / (1 << 20),
                mode == CameraMode::orbit ? "orbit" : "fly", progressive.step > 0 ? "  refining" : "");
   add_coherence(renderer, text);
   add_effects(renderer.effects, text);

@@ -281,7 +281,7 @@ TEST_CASE("instant_radiosity_finds_light_that_missed_the_scene_at_first") {
   std::unique_ptr<TestRenderer> t = rendered(room.scene, instant_settings(64));
   REQUIRE(lights_of(*t).count == 0);
   light->position = {0, 0, 0};
-  t->renderer.lit_mask = ~t->renderer.effects.mask;
+  t->renderer.lights.lit_mask = ~t->renderer.effects.mask;
   REQUIRE(render_frame(&t->renderer, 0).ok);
   std::unique_ptr<TestRenderer> fresh = rendered(room.scene, instant_settings(128));
   REQUIRE(lights_of(*t).count >= 64);

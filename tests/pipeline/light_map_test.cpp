@@ -49,7 +49,7 @@ std::unique_ptr<OwnedMap> map_of(Renderer* light, Renderer* device, const std::v
   const LightGrid grid = light_grid(device->settings, pitch);
   owned->surfaces.resize(light_count(grid)), owned->lights.resize(light_count(grid));
   take_mapped_surfaces(device, hits.data(), device->settings.height, grid, owned->surfaces.data());
-  light->camera = device->camera, light->camera_overridden = true;
+  light->view.camera = device->view.camera, light->view.camera_overridden = true;
   REQUIRE(begin_frame(light, {seconds}).ok);
   for (std::uint32_t i = 0; i < light_count(grid); ++i) {
     const auto row = static_cast<std::uint16_t>(i / grid.columns * pitch);
@@ -149,7 +149,7 @@ TEST_CASE("light_map_gives_surfaces_their_own_light") {
   const double by_pitch = mean_difference(with(before->map), with(painted(traced(d), 2)->map));
   CAPTURE(by_pitch);
   CHECK(by_pitch < 0.015);
-  Camera camera = d->camera;
+  Camera camera = d->view.camera;
   camera.eye = camera.target + (camera.eye - camera.target) * 0.8f + Vec3{0.1f, 0.1f, 0} * camera.eye.z;
   REQUIRE(set_camera(d, camera).ok);
   const double by_view = mean_difference(with(before->map), with(painted(traced(d), 2)->map));
@@ -184,7 +184,7 @@ TEST_CASE("light_map_stands_in_for_light_at_every_pixel") {
       before = error;
     }
     // From two degrees on.
-    Camera camera = d->camera;
+    Camera camera = d->view.camera;
     camera.eye = camera.target + (camera.eye - camera.target) * 0.98f + Vec3{0.03f, 0.02f, 0} * (camera.eye.z);
     REQUIRE(set_camera(d, camera).ok);
     hits = traced(d);

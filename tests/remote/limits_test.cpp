@@ -323,9 +323,9 @@ TEST_CASE("limits_hold_for_frames") {
   }
   for (double bad : {kNan, kInf, -kInf, 1.1e18, -1.1e18})
     for (int place = 0; place < 9; ++place) {
-      Camera camera = renderer->camera;
+      Camera camera = renderer->view.camera;
       (place < 3 ? &camera.eye.x : place < 6 ? &camera.target.x : &camera.up.x)[place % 3] = static_cast<float>(bad);
       CHECK(!set_camera(renderer, camera).ok);
     }
-  CHECK(set_camera(renderer, renderer->camera).ok);
+  CHECK(set_camera(renderer, renderer->view.camera).ok);
 }

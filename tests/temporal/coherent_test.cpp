@@ -92,7 +92,7 @@ TEST_CASE("seesaw_frames_equal_whole_ones") {
   std::uint64_t traced = 0, pixels = 0;
   for (int begin : {0, 60, 300}) {
     for (TestRenderer* each : {pair.whole.get(), pair.coherent.get()}) {
-      Camera camera = each->renderer.camera;
+      Camera camera = each->renderer.view.camera;
       camera.eye.x += 0.01f * static_cast<float>(begin);
       REQUIRE(set_camera(&each->renderer, camera).ok);
     }
@@ -242,7 +242,7 @@ TEST_CASE("coherence_without_room_is_left_out") {
   Settings settings;
   settings.width = 160, settings.height = 120;
   auto plain = make_renderer(shared_builtin("seesaw")->scene, settings);
-  settings.memory_bytes = plain->renderer.memory.total_bytes + 1024;
+  settings.memory_bytes = plain->renderer.memory.plan.total_bytes + 1024;
   settings.coherence = CoherenceMode::on;
   auto tight = make_renderer(shared_builtin("seesaw")->scene, settings);
   CHECK(!tight->renderer.history.state.planned);

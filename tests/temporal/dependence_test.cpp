@@ -26,7 +26,7 @@ Pair make_pair(std::unique_ptr<GeneratedScene> scene, Settings settings) {
 }
 
 bool same_frames(const Pair& pair) {
-  for (TestRenderer* each : {pair.whole.get(), pair.coherent.get()}) each->renderer.lit_mask = ~EffectMask(0);
+  for (TestRenderer* each : {pair.whole.get(), pair.coherent.get()}) each->renderer.lights.lit_mask = ~EffectMask(0);
   REQUIRE(render_frame(&pair.whole->renderer, 0).ok);
   REQUIRE(render_frame(&pair.coherent->renderer, changes_at(0)).ok);
   const Array<Vec3>&a = pair.whole->renderer.image, &b = pair.coherent->renderer.image;
@@ -63,7 +63,7 @@ TEST_CASE("dependence_on_camera_settings_and_surroundings_makes_whole_frames") {
       {"no previous frame", [](Renderer*) {}},
       {"the camera moved",
        [](Renderer* renderer) {
-         Camera camera = renderer->camera;
+         Camera camera = renderer->view.camera;
          camera.eye.x += 0.1f;
          REQUIRE(set_camera(renderer, camera).ok);
        }},
@@ -73,7 +73,7 @@ TEST_CASE("dependence_on_camera_settings_and_surroundings_makes_whole_frames") {
          settings.ray_depth = 2;
          REQUIRE(change_settings(renderer, settings).ok);
        }},
-      {"the exposure changed", [](Renderer* renderer) { renderer->exposure = 4; }},
+      {"the exposure changed", [](Renderer* renderer) { renderer->view.exposure = 4; }},
       {"the surroundings changed",
        [](Renderer* renderer) {
          renderer->scene.info.background = {0.4f, 0.3f, 0.2f};

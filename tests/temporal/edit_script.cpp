@@ -60,7 +60,7 @@ void edit_surroundings(EditScript* s) {
   const float x = next_in(&s->rng, 0, 1);
   for (Renderer* renderer : {&s->whole->renderer, &s->coherent->renderer}) {
     Settings settings = renderer->settings;
-    Camera camera = renderer->camera;
+    Camera camera = renderer->view.camera;
     switch (kind) {
       case 0:
         renderer->scene.info.background = color;
@@ -69,7 +69,7 @@ void edit_surroundings(EditScript* s) {
         renderer->scene.info.ambient = color;
         break;
       case 2:
-        renderer->exposure = 0.5f + x;
+        renderer->view.exposure = 0.5f + x;
         break;
       case 3:
         settings.ray_depth = static_cast<std::uint32_t>(x * 5);
@@ -97,7 +97,7 @@ void edit_surroundings(EditScript* s) {
 void edit_material(EditScript* s) {
   const std::vector<Material>& opened = s->generated->materials;
   const std::uint32_t index = next_u32(&s->rng) % static_cast<std::uint32_t>(opened.size());
-  const Material m = recolored(opened[index], s->whole->renderer.materials[index],
+  const Material m = recolored(opened[index], s->whole->renderer.materials.current[index],
                                static_cast<std::uint32_t>(s->generated->textures.size()), &s->rng);
   if (!check_recolored(&s->whole->renderer, index, m).ok) return;
   for (Renderer* renderer : {&s->whole->renderer, &s->coherent->renderer}) (void)change_material(renderer, index, m);
@@ -236,7 +236,7 @@ EditScript begin_script(std::uint32_t features, std::uint64_t seed) {
 bool follow_script(EditScript* s) {
   Renderer *whole = &s->whole->renderer, *coherent = &s->coherent->renderer;
   edit(s);
-  whole->lit_mask = coherent->lit_mask = ~EffectMask(0);
+  whole->lights.lit_mask = coherent->lights.lit_mask = ~EffectMask(0);
   const std::uint32_t disturbance = next_u32(&s->rng) % 40;
   if (disturbance == 0 && !is_stopped(coherent, s->seconds + 0.3)) return false;
   if (disturbance == 1 && !render_frame(coherent, s->seconds + 0.5).ok) return false;

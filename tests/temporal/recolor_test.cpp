@@ -380,7 +380,7 @@ TEST_CASE("recoloring_a_lamp_dims_it") {
     for (float share : {0.5f, 0.0f, 0.0f, 0.25f, 1.0f}) {
       CAPTURE(share);
       Material m = pair.scene->materials[2];
-      const bool changes = pair.coherent->renderer.materials[2].emission != m.emission * share;
+      const bool changes = pair.coherent->renderer.materials.current[2].emission != m.emission * share;
       m.emission = m.emission * share;
       const std::uint64_t traced = recolored_to(pair, 2, m);
       CHECK(whole_because(pair) == "");
@@ -421,7 +421,7 @@ TEST_CASE("recoloring_that_reaches_far_makes_whole_frames") {
   CHECK(recolored_to(pair, 1, pane_changed(Pane::holes, pair.scene->materials[1])) == pixel_count(pair));
   CHECK(whole_because(pair) == "a recoloured surface moved");
   for (Vec3& p : pair.scene->rest_positions) p.x += 0.3f;
-  Material m = pair.coherent->renderer.materials[1];
+  Material m = pair.coherent->renderer.materials.current[1];
   m.diffuse = {0.1f, 0.2f, 0.3f};
   CHECK(recolored_to(pair, 1, m) < pixel_count(pair));
 }

@@ -22,8 +22,8 @@ std::vector<std::uint8_t> expected_screen(const Stage& stage, const Renderer& re
   const Viewer& v = stage.viewer;
   const int bytes = v.format.bits_per_pixel / 8, line_bytes = stage.screen_width() * bytes;
   std::vector<std::uint8_t> page(static_cast<std::size_t>(line_bytes * stage.screen_height()));
-  pack_rows(renderer.image.data, v.width, v.height, 0, v.height, renderer.exposure, v.format, v.rotation, stage.dither,
-            page.data(), line_bytes);
+  pack_rows(renderer.image.data, v.width, v.height, 0, v.height, renderer.view.exposure, v.format, v.rotation,
+            stage.dither, page.data(), line_bytes);
   for (int row = 0; dims && row < v.height; ++row) {
     for (int column = 0; column < v.width; ++column) {
       if (!is_kept(renderer, column, row)) continue;
@@ -148,7 +148,7 @@ TEST_CASE("viewer_shows_what_coherence_saves") {
     Stage::load("seesaw", coherent ? "on" : "off", &opened);
     Renderer* renderer = &opened.renderer;
     ViewerLoop loop;
-    loop.tile_spans = arena_array<Span>(&renderer->frame_arena, progressive_spans_max(renderer->settings));
+    loop.tile_spans = arena_array<Span>(&renderer->memory.frame, progressive_spans_max(renderer->settings));
     loop.finished = true;
     finish_picture(1, &stage.viewer, renderer, &loop);
     CHECK(hud_line(loop.hud, "coherence") == (coherent ? "coherence: whole frame: no previous frame" : ""));

@@ -45,8 +45,10 @@ Status plan_way(Way way, const ReportOptions& o, std::uint32_t table, Renderer* 
   if (way == Way::frame_by_frame || renderer->history.state.planned) return success();
   if ((renderer->effects.mask & (way == Way::by_tables ? kNotInTables : kNotFollowed)) != 0)
     return failure("coherence does not follow these frames: %s", renderer->history.state.unplanned_because);
-  const CoherencePlan plan = coherence_plan(*settings, renderer->light_point_count_max, renderer->light_polygons.count);
-  std::size_t bytes = renderer->memory.total_bytes + coherence_need(renderer->scene, renderer->effects.mask, plan) +
+  const CoherencePlan plan =
+      coherence_plan(*settings, renderer->lights.point_count_max, renderer->lights.polygons.count);
+  std::size_t bytes = renderer->memory.plan.total_bytes +
+                      coherence_need(renderer->scene, renderer->effects.mask, plan) +
                       coherence_scratch_need(renderer->scene, renderer->effects.mask);
   return failure("coherence does not fit in --memory: try --memory %zuM", (bytes >> 20) + 1);
 }

@@ -167,7 +167,7 @@ Status prepare_rows(Renderer* renderer, Client* client, FrameStart* start) {
   const std::uint64_t posed_ns = renderer->pace.clock->now_ns();
   start->unchanged = client->complete && client->kept_count > 0 &&
                      client->kept_count == renderer->history.coherence.kept_count &&
-                     is_shared_frame_unchanged(*renderer) && renderer->exposure == client->request.exposure;
+                     is_shared_frame_unchanged(*renderer) && renderer->view.exposure == client->request.exposure;
   search_shared_rows(renderer, ~0u);
   const float width = static_cast<float>(renderer->settings.width);
   const float own_part = client->light.by_effect ? static_cast<float>(own_light_part(*client)) : 1;
@@ -191,8 +191,8 @@ Status prepare_rows(Renderer* renderer, Client* client, FrameStart* start) {
 // camera, the pose must come first.
 bool asks_first(const Renderer& renderer, const Client& client, double seconds) {
   const Array<const Camera>& cameras = renderer.scene.cameras;
-  const bool camera_known = renderer.camera_overridden || renderer.camera_index >= cameras.count ||
-                            cameras[renderer.camera_index].node == kNone;
+  const bool camera_known = renderer.view.camera_overridden || renderer.view.camera_index >= cameras.count ||
+                            cameras[renderer.view.camera_index].node == kNone;
   return client.options.has_scene && camera_known && renderer.pose.positions.count > 0 && !client.unchanged &&
          seconds != client.request.seconds;
 }
@@ -203,8 +203,8 @@ void pack_device_rows(const Renderer& renderer, Client* client, std::uint32_t ro
   int width = static_cast<int>(renderer.settings.width), height = static_cast<int>(renderer.settings.height);
   bool small = client->options.format == WireFormat::rgb565;
   pack_rows(renderer.image.data, width, height, static_cast<int>(row_begin), static_cast<int>(row_end),
-            renderer.exposure, small ? kRgb565 : kRgb888, Rotation::none, client->options.dither, client->pixels.data,
-            width * static_cast<int>(pixel_bytes(client->options.format)));
+            renderer.view.exposure, small ? kRgb565 : kRgb888, Rotation::none, client->options.dither,
+            client->pixels.data, width * static_cast<int>(pixel_bytes(client->options.format)));
 }
 
 void prepare_device(Renderer* renderer, Client* client) {

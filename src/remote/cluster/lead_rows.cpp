@@ -92,7 +92,7 @@ PieceLimits ClusterLead::limits_of(const Slot& slot, std::uint32_t index, std::u
   limits.window = window;
   limits.pixels = kFirstPixels * rank.threads;
   if (session.trace_ns > 0)
-    limits.pixels = slice_pixels(session.renderer.settings, session.renderer.light_points.count, session.trace_ns,
+    limits.pixels = slice_pixels(session.renderer.settings, session.renderer.lights.points.count, session.trace_ns,
                                  kPieceNs * rank.threads);
   double speed = 0;
   for (const Rank& other : ranks_)

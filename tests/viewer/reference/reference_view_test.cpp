@@ -116,7 +116,7 @@ TEST_CASE("side_by_side_begins_anew_when_the_view_changes") {
   std::uint32_t before = kReferenceView.samples(*s.side_by_side);
   REQUIRE(kReferenceView.advance(s.side_by_side, s.renderer, 0, 2, 0).ok);
   CHECK(kReferenceView.samples(*s.side_by_side) >= before);
-  Camera camera = s.renderer->camera;
+  Camera camera = s.renderer->view.camera;
   camera.eye.x += 0.5f;
   REQUIRE(set_camera(s.renderer, camera).ok);
   REQUIRE(kReferenceView.advance(s.side_by_side, s.renderer, 0, 3, 0).ok);
