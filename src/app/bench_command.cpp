@@ -21,7 +21,7 @@ namespace {
 // Null: coherence is off.
 Json coherence_json(const CommonOptions& options, const Renderer& renderer, const Measurement& m) {
   if (renderer.settings.coherence == CoherenceMode::off) return Json();
-  const char* because = m.coherent ? m.whole_because : renderer.coherence_state.unplanned_because;
+  const char* because = m.coherent ? m.whole_because : renderer.history.state.unplanned_because;
   return {{"asked", options.coherence},
           {"whole_frames", m.coherent ? m.whole_frames : m.frame_count},
           {"whole_because", because ? Json(because) : Json()}};
@@ -31,7 +31,7 @@ Json coherence_json(const CommonOptions& options, const Renderer& renderer, cons
 void print_whole_frames(const Renderer& renderer, const Measurement& m) {
   if (renderer.settings.coherence == CoherenceMode::off) return;
   if (!m.coherent)
-    std::printf("  %-22s %10s     (%s)\n", "traced whole", "all", renderer.coherence_state.unplanned_because);
+    std::printf("  %-22s %10s     (%s)\n", "traced whole", "all", renderer.history.state.unplanned_because);
   else if (m.whole_frames > 0)
     std::printf("  %-22s %10u     (the last: %s)\n", "traced whole", m.whole_frames, m.whole_because);
 }
@@ -66,7 +66,7 @@ Json to_json(const CommonOptions& options, const Renderer& renderer, Measurement
           {"rays_per_second", rays_per_second(*m)},
           {"nodes_visited", m->counts.stats.nodes},
           {"triangles_tested", m->counts.stats.triangles},
-          {"memory", memory_json(renderer.memory)},
+          {"memory", memory_json(renderer.memory.plan)},
           {"effects", effects},
           {"build_ms", renderer.timings.build_ms},
           {"pose_ms", range_of(m->pose_ms.data(), m->frame_count).median},
@@ -102,7 +102,7 @@ void print_table(const CommonOptions& options, const Renderer& renderer, Measure
     double price = m->effect_price[static_cast<int>(row.effect)];
     if (std::isfinite(price)) std::printf("  %-22s %10.0f\n", row.name, price);
   }
-  print_memory(renderer.memory);
+  print_memory(renderer.memory.plan);
 }
 
 Json sparse_json(const SparseCost* costs) {

@@ -23,8 +23,8 @@ Status check_coherence(const char* because, CommonOptions* o) {
 }
 
 Status render_next(Renderer* renderer, double seconds, CoherentSequence* sequence, bool* complete) {
-  RETURN_IF_ERROR(render_coherent(renderer, seconds, &interrupted, complete));
-  const CoherenceState& state = renderer->coherence_state;
+  RETURN_IF_ERROR(render_frame(renderer, changes_at(seconds, &interrupted), complete));
+  const CoherenceState& state = renderer->history.state;
   if (state.whole_because && sequence->frames > 0) sequence->whole_because = state.whole_because;
   sequence->whole_frames += state.whole_because != nullptr;
   sequence->pixels += renderer->image.count;

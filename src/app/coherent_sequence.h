@@ -1,6 +1,6 @@
 // Savings by coherence over a sequence of frames.
 #pragma once
-#include "engine/coherent.h"
+#include "engine/frame.h"
 #include "session/report.h"
 #include "session/scene_options.h"
 
@@ -14,7 +14,7 @@ struct CoherentSequence {
 // If coherence has no effect, for the reason `because` (null: it has one), refuses "on" and turns "auto" into "off".
 Status check_coherence(const char* because, CommonOptions* options);
 
-// render_coherent() for the next frame; an interrupt ends it early.
+// Renders the changes of the next frame; an interrupt ends it early.
 Status render_next(Renderer* renderer, double seconds, CoherentSequence* sequence, bool* complete);
 
 // Adds the savings of another process in frames of the same sequence.

@@ -37,14 +37,14 @@ void print_contents(const std::string& name, const Renderer& renderer) {
               counted(scene.materials.count, "material").c_str(), counted(scene.textures.count, "texture").c_str(),
               counted(scene.lights.count, "light").c_str());
   if (emitting > 0) std::printf(", %s", counted(static_cast<std::uint64_t>(emitting), "emitting material").c_str());
-  std::printf("; accelerator %s\n", renderer.accel_info->name);
+  std::printf("; accelerator %s\n", renderer.accel.info->name);
 }
 
 void print_animations(const Renderer& renderer) {
   const Scene& scene = renderer.scene;
   for (std::uint32_t index : numbered_animations(scene)) std::printf("%s\n", describe_animation(scene, index).c_str());
-  if (scene.animations.count > 1 || (scene.animations.count && renderer.animation == kNone))
-    std::printf("plays: %s\n", describe_animation(scene, renderer.animation).c_str());
+  if (scene.animations.count > 1 || (scene.animations.count && renderer.view.animation == kNone))
+    std::printf("plays: %s\n", describe_animation(scene, renderer.view.animation).c_str());
 }
 
 Json animations_json(const Renderer& renderer) {
@@ -52,7 +52,7 @@ Json animations_json(const Renderer& renderer) {
   for (std::uint32_t index : numbered_animations(renderer.scene))
     list.push_back({{"description", describe_animation(renderer.scene, index)},
                     {"seconds", renderer.scene.animations[index].duration},
-                    {"plays", index == renderer.animation}});
+                    {"plays", index == renderer.view.animation}});
   return list;
 }
 
@@ -61,14 +61,14 @@ int run(const CommonOptions& options, bool prices) {
   Status status = check_outputs({{"SCENE", options.scene}}, {{"--json", options.json}});
   if (status.ok) status = open_scene(options, {picture_bytes}, &opened);
   const Renderer& renderer = opened.renderer;
-  if (renderer.memory.total_bytes > 0) {  // planned, even if it does not fit
+  if (renderer.memory.plan.total_bytes > 0) {  // planned, even if it does not fit
     print_notes(opened);
     if (options.json != "-") {
       print_contents(options.scene, renderer);
       print_animations(renderer);
       print_effects(renderer.effects);
-      print_memory(renderer.memory);
-      const char* without = renderer.coherence_state.unplanned_because;
+      print_memory(renderer.memory.plan);
+      const char* without = renderer.history.state.unplanned_because;
       std::printf("coherence: %s%s\n", without ? "every frame is traced whole: " : "only what changes is traced",
                   without ? without : "");
     }
@@ -76,11 +76,11 @@ int run(const CommonOptions& options, bool prices) {
       Json json = {{"scene", options.scene},
                    {"triangles", renderer.scene.triangles.count},
                    {"fits", status.ok},
-                   {"accelerator", renderer.accel_info->name},
-                   {"coherence", renderer.coherence_state.planned},
+                   {"accelerator", renderer.accel.info->name},
+                   {"coherence", renderer.history.state.planned},
                    {"animations", animations_json(renderer)},
                    {"effects", effects_json(renderer.effects)},
-                   {"memory", memory_json(renderer.memory)}};
+                   {"memory", memory_json(renderer.memory.plan)}};
       Status written = write_json(options.json, json);
       if (!written.ok) return report(written);
     }

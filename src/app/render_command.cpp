@@ -65,7 +65,7 @@ Status open_budgeted(const RenderOptions& o, const OutputBytes& bytes, RenderJob
   p->packed_format = raw ? p->raw_format : kRgb888;
   p->dither = raw && o.dither;
   p->packed_line_bytes = static_cast<int>(renderer->settings.width) * p->packed_format.bits_per_pixel / 8;
-  job->page = arena_array<std::uint8_t>(&renderer->frame_arena,
+  job->page = arena_array<std::uint8_t>(&renderer->memory.frame,
                                         static_cast<std::size_t>(p->packed_line_bytes) * renderer->settings.height)
                   .data;
   p->packed = job->page;
@@ -99,7 +99,7 @@ Status start_journal(const SceneSource& source, const Renderer& renderer, FrameJ
 // Makes one span for each row of the crop.
 void make_crop_spans(const PixelBox& crop, Renderer* renderer, RenderJob* job) {
   if (crop.width == 0) return;
-  job->crop_spans = arena_array<Span>(&renderer->frame_arena, static_cast<std::size_t>(crop.height));
+  job->crop_spans = arena_array<Span>(&renderer->memory.frame, static_cast<std::size_t>(crop.height));
   for (int i = 0; i < crop.height; ++i)
     job->crop_spans[static_cast<std::uint32_t>(i)] =
         row_span(static_cast<std::uint32_t>(crop.top + i), static_cast<std::uint32_t>(crop.left),
@@ -137,13 +137,13 @@ Status open_job(const RenderOptions& given, Opened* o) {
                                                     : open_scene_with(job->servers, options->common, bytes, &o->scene));
   RETURN_IF_ERROR(check_pictures(*job, o->scene.source));
   Renderer* renderer = &o->scene.renderer;
-  if (moves_camera(*options)) job->camera = make_camera_control(renderer->camera, subject_of(o->scene));
+  if (moves_camera(*options)) job->camera = make_camera_control(renderer->view.camera, subject_of(o->scene));
   RETURN_IF_ERROR(start_servers_for(*options, renderer, job));
   make_crop_spans(job->asked.picture.crop, renderer, job);
   RETURN_IF_ERROR(start_animation(renderer, &o->animation, job));
   if (leads(options->parts.team)) RETURN_IF_ERROR(start_journal(o->scene.source, *renderer, &o->journal, job));
   job->source = &o->scene.source;
-  if (renderer->coherence_state.planned && !job->servers) job->coherent = &o->coherent;  // otherwise the client uses it
+  if (renderer->history.state.planned && !job->servers) job->coherent = &o->coherent;  // otherwise the client uses it
   return success();
 }
 

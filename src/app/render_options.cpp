@@ -198,12 +198,13 @@ std::string identity_of(const RenderOptions& o, const RenderRequest& request, co
       POCKETRAY_VERSION_PATCH);
   add(" %u %u %" PRIx64, renderer.settings.width, renderer.settings.height, std::uint64_t(renderer.effects.mask));
   for (const SettingRow& row : kSettingList) add(" %a", row.field.get(renderer.settings));
-  const Camera& c = renderer.camera;
+  const Camera& c = renderer.view.camera;
   for (const Vec3& v : {c.eye, c.target, c.up, renderer.scene.info.background, renderer.scene.info.ambient})
     add(" %a %a %a", static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z));
   add(" %a %a %d %u %d", static_cast<double>(c.vertical_fov), static_cast<double>(c.vertical_extent),
-      static_cast<int>(c.projection), renderer.camera_index, renderer.camera_overridden);
-  add(" %a %d %u", static_cast<double>(renderer.exposure), static_cast<int>(renderer.look.light), renderer.animation);
+      static_cast<int>(c.projection), renderer.view.camera_index, renderer.view.camera_overridden);
+  add(" %a %d %u", static_cast<double>(renderer.view.exposure), static_cast<int>(renderer.view.look.light),
+      renderer.view.animation);
   add(" %a %u %a %a", static_cast<double>(o.orbit_degrees), o.turntable, o.seconds, o.frames_per_second);
   if (moves_camera(o)) add(" %u", request.sequence.first);
   const PixelBox box = box_to_write(request.picture, renderer.settings);
@@ -235,12 +236,12 @@ std::vector<std::string> unexpected(const RenderOptions& o, const RenderRequest&
   std::vector<std::string> notes;
   const bool sequence = request.sequence.given && o.turntable == 0;
   const double last = sequence ? time_of(o, request, request.sequence.last, scene.info) : o.seconds;
-  if (!is_animated(scene) || renderer.animation == kNone) {
+  if (!is_animated(scene) || renderer.view.animation == kNone) {
     if (o.seconds != 0) notes.push_back("--time has no effect: the scene does not move");
     if (sequence && !moves_camera(o) && request.sequence.last > request.sequence.first)
       notes.push_back(
           "all frames are equal: the scene does not move; --turntable N or --orbit DEGREES moves the camera");
-  } else if (const double duration = static_cast<double>(scene.animations[renderer.animation].duration);
+  } else if (const double duration = static_cast<double>(scene.animations[renderer.view.animation].duration);
              last >= duration && last > 0) {
     char text[160];
     std::snprintf(text, sizeof text, "the animation loops after %g s: %s %g s shows its %g s", duration,

@@ -45,7 +45,7 @@ void print_ended_rays(const Renderer& renderer, const Tracer& counts) {
     std::printf("up to %.2g %% of a sample, ", 100 * share);
   else
     std::printf("up to a whole sample, ");
-  const double whites = static_cast<double>(counts.ended_bound_max * renderer.exposure);
+  const double whites = static_cast<double>(counts.ended_bound_max * renderer.view.exposure);
   if (whites < 1)
     std::printf("an error of at most %.2g of white\n", whites);
   else
@@ -60,7 +60,7 @@ void print_summary(const RenderSummary& s) {
   double pixels = static_cast<double>(s.box.width) * s.box.height * s.frame_count;
   if (s.options->plan) {
     print_effects(renderer.effects);
-    print_memory(renderer.memory);
+    print_memory(renderer.memory.plan);
   }
   if (s.files.size() > 1) std::printf("%s … ", shown(s.files.front()).c_str());
   std::printf("%s: ", s.files.back() == "-" ? "standard output" : shown(s.files.back()).c_str());
@@ -130,8 +130,8 @@ Json to_json(const RenderSummary& s) {
           {"ended_weight_max", counts.ended_weight_max},
           {"ended_radiance_max", counts.ended_bound_max},
           {"left_out_levels_max", counts.left_out_share_max * renderer.settings.cut_off_levels},
-          {"exposure", renderer.exposure},
-          {"memory", memory_json(renderer.memory)},
+          {"exposure", renderer.view.exposure},
+          {"memory", memory_json(renderer.memory.plan)},
           {"effects", effects_json(renderer.effects)},
           {"servers", s.servers ? share_json(*s.servers) : Json()},
           {"coherence", s.coherent ? coherence_json(*s.coherent) : Json()},

@@ -22,8 +22,8 @@ Status time_frame(Renderer* renderer, double seconds, void* page, double* ns) {
   std::uint64_t start = clock_ns();
   RETURN_IF_ERROR(render_frame(renderer, seconds, Aov::none, &interrupted));
   int width = static_cast<int>(renderer->settings.width), height = static_cast<int>(renderer->settings.height);
-  pack_rows(renderer->image.data, width, height, 0, height, renderer->exposure, kRgb565, Rotation::none, false, page,
-            2 * width);
+  pack_rows(renderer->image.data, width, height, 0, height, renderer->view.exposure, kRgb565, Rotation::none, false,
+            page, 2 * width);
   *ns = static_cast<double>(clock_ns() - start);
   return success();
 }
@@ -63,15 +63,15 @@ Status measure_front(Renderer* renderer, const Front& front, FrontPrices* p) {
   const Settings before = renderer->settings;
   const Pace pace = renderer->pace;
   renderer->pace = Pace();
-  std::size_t mark = arena_mark(renderer->frame_arena);
-  auto page = arena_array<std::uint8_t>(&renderer->frame_arena, std::size_t(before.width) * before.height * 2);
+  std::size_t mark = arena_mark(renderer->memory.frame);
+  auto page = arena_array<std::uint8_t>(&renderer->memory.frame, std::size_t(before.width) * before.height * 2);
   double warm_up;
   Status status = change_settings(renderer, with_candidate(before, front.candidates[0]));
   if (status.ok) status = time_frame(renderer, 0, page.data, &warm_up);
   std::uint32_t rounds = static_cast<std::uint32_t>(p->ns_per_pixel[0].capacity());
   for (std::uint32_t round = 0; status.ok && round < rounds && !interrupted; ++round)
     status = measure_round(renderer, front, round, page.data, p);
-  arena_release(&renderer->frame_arena, mark);
+  arena_release(&renderer->memory.frame, mark);
   renderer->pace = pace;
   if (!status.ok) return status;
   for (std::uint32_t i = 0; i < front.count; ++i)

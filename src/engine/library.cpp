@@ -67,7 +67,7 @@ Status read_camera(const pocketray_camera* given, const Settings& settings, Came
 Status plan_again(pocketray_instance* instance, const Settings& settings) {
   Renderer* renderer = &instance->renderer;
   RETURN_IF_ERROR(change_settings(renderer, settings));
-  renderer->lit_mask = ~EffectMask(0);  // place lights again
+  renderer->lights.lit_mask = ~EffectMask(0);  // place lights again
   instance->refining = false;
   return success();
 }

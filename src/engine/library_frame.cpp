@@ -5,7 +5,7 @@
 
 #include "base/check.h"
 #include "base/limit_list.h"
-#include "engine/coherent.h"
+#include "engine/frame.h"
 #include "engine/library.h"
 #include "present/pack.h"
 
@@ -61,7 +61,7 @@ void write_pixels(const Renderer& renderer, std::uint32_t row_begin, std::uint32
   int width = static_cast<int>(renderer.settings.width), height = static_cast<int>(renderer.settings.height);
   if (target.format != POCKETRAY_RGB_FLOAT) {
     pack_rows(renderer.image.data, width, height, static_cast<int>(row_begin), static_cast<int>(row_end),
-              renderer.exposure, kFormats[target.format], target.rotation, target.dither, target.data,
+              renderer.view.exposure, kFormats[target.format], target.rotation, target.dither, target.data,
               target.line_bytes);
     return;
   }
@@ -84,51 +84,28 @@ void clear_costs(pocketray_instance* instance) {
   instance->refining = false;
 }
 
-// Renders bands of rows and calls the progress function after each, which may end the frame.
-Status render_bands(pocketray_instance* instance, double seconds) {
+// Number of complete rows of the frame, from the top.
+std::uint32_t rows_done(const Renderer& renderer) {
+  const FrameSpans& own = renderer.history.spans;
+  if (own.list.done_count < own.list.span_count) return own.list.spans[own.list.done_count].row;
+  return own.all ? renderer.settings.height : std::min(own.tile_row * kChangeTileSide, renderer.settings.height);
+}
+
+// Renders the frame, or where coherence is planned the pixels that may have changed. Calls the progress function, if
+// any, after each band of rows; it may end the frame.
+Status render(pocketray_instance* instance, double seconds) {
   // The function may set another one for the next frame.
   const pocketray_progress progress = instance->progress;
   void* const user = instance->progress_user;
-  CHECK(progress != nullptr);
   Renderer* renderer = &instance->renderer;
-  RETURN_IF_ERROR(prepare_frame(renderer, seconds));
-  SpanList bands = row_bands(renderer);
-  SpanSource source = list_source(&bands);
-  source.stop = &instance->stop;
-  source.deadline_ns = 0;  // a call of trace_frame() traces one band
-  std::uint64_t start = clock_ns();
+  const FramePurpose purpose = renderer->history.state.planned ? FramePurpose::changes : FramePurpose::whole;
+  RETURN_IF_ERROR(begin_frame(renderer, {seconds, purpose}));
   for (bool ended = false; !ended;) {
-    ended = trace_frame(renderer, source);
-    instance->rows_done = bands.done_count;
-    if (!ended && instance->stop.load(std::memory_order_relaxed)) break;
-    ended |= progress(user, bands.done_count, renderer->settings.height) != 0;
-  }
-  renderer->timings.trace_ms = static_cast<double>(clock_ns() - start) * 1e-6;
-  return success();
-}
-
-// Number of complete rows of the frame, from the top.
-std::uint32_t rows_done(const Renderer& renderer, const CoherentFrame& frame) {
-  if (frame.list.done_count < frame.list.span_count) return frame.list.spans[frame.list.done_count].row;
-  return frame.all ? renderer.settings.height : std::min(frame.tile_row * kChangeTileSide, renderer.settings.height);
-}
-
-// Renders the pixels that may have changed since the last frame.
-Status render_changes(pocketray_instance* instance, double seconds) {
-  const pocketray_progress progress = instance->progress;
-  void* const user = instance->progress_user;
-  Renderer* renderer = &instance->renderer;
-  RETURN_IF_ERROR(prepare_frame(renderer, seconds));
-  std::uint64_t start = clock_ns();
-  CoherentFrame frame;
-  begin_coherent(renderer, &frame);
-  for (bool ended = false; !ended;) {
-    ended = advance_coherent(renderer, progress ? 0 : kNoDeadline, &instance->stop, &frame);
-    instance->rows_done = ended ? renderer->settings.height : rows_done(*renderer, frame);
+    ended = trace_frame(renderer, frame_source(renderer, &instance->stop, progress ? 0 : kNoDeadline));
+    instance->rows_done = ended ? renderer->settings.height : rows_done(*renderer);
     if (!ended && instance->stop.load(std::memory_order_relaxed)) break;
     if (progress) ended |= progress(user, instance->rows_done, renderer->settings.height) != 0;
   }
-  renderer->timings.trace_ms = static_cast<double>(clock_ns() - start) * 1e-6;
   return success();
 }
 
@@ -144,9 +121,7 @@ pocketray_result pocketray_render(pocketray_instance* instance, double seconds, 
   if (!status.ok) return refuse(POCKETRAY_ERROR_ARGUMENT, status);
   Renderer* renderer = &instance->renderer;
   clear_costs(instance);
-  status = renderer->coherence_state.planned ? render_changes(instance, seconds)
-           : instance->progress              ? render_bands(instance, seconds)
-                                : render_frame(renderer, seconds, Aov::none, &instance->stop, &instance->rows_done);
+  status = render(instance, seconds);
   if (!status.ok) return refuse(POCKETRAY_ERROR_SCENE, status);
   CHECK_LE(instance->rows_done, renderer->settings.height);
   write_pixels(*renderer, 0, instance->rows_done, target);
@@ -157,7 +132,7 @@ pocketray_result pocketray_begin(pocketray_instance* instance, double seconds) {
   Status status = check_rendering(instance, seconds);
   if (!status.ok) return refuse(POCKETRAY_ERROR_ARGUMENT, status);
   clear_costs(instance);
-  status = prepare_frame(&instance->renderer, seconds);
+  status = begin_frame(&instance->renderer, {seconds});
   if (!status.ok) return refuse(POCKETRAY_ERROR_SCENE, status);
   instance->progressive = Progressive();
   instance->progressive.row_ns = instance->renderer.row_ns.data;
@@ -188,7 +163,6 @@ pocketray_result pocketray_refine(pocketray_instance* instance, double milliseco
     if (clock_ns() >= deadline) break;
   }
   instance->rows_done = finished_rows(*renderer, *progressive);
-  renderer->timings.trace_ms = static_cast<double>(progressive->trace_ns) * 1e-6;
   std::uint32_t begin, end;
   if (take_dirty_rows(progressive, &begin, &end)) write_pixels(*renderer, begin, end, target);
   return result;
@@ -220,7 +194,7 @@ pocketray_result pocketray_get_frame(const pocketray_instance* instance, pocketr
   result.rays_skipped = counts.rays_left_out;
   result.rows_done = instance->rows_done;
   result.row_count = renderer.settings.height;
-  const CoherenceState& coherence = renderer.coherence_state;
+  const CoherenceState& coherence = renderer.history.state;
   result.pixels_traced =
       coherence.planned ? coherence.pixels_traced : std::uint64_t(instance->rows_done) * renderer.settings.width;
   result.whole_because = coherence.planned ? coherence.whole_because : coherence.unplanned_because;

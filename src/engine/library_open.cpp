@@ -154,9 +154,9 @@ Status add_parts(const Request& q, Renderer* renderer) {
   if (count == 0) return success();
   if (scene->nodes.count || scene->animations.count)
     return failure("the scene is animated and has nodes of its own: leave parts out and set movable");
-  Array<Node> nodes = arena_array<Node>(&renderer->scene_arena, count);
-  Array<MovingMesh> meshes = arena_array<MovingMesh>(&renderer->scene_arena, count);
-  Array<Animation> animation = arena_array_zeroed<Animation>(&renderer->scene_arena, 1);
+  Array<Node> nodes = arena_array<Node>(&renderer->memory.scene, count);
+  Array<MovingMesh> meshes = arena_array<MovingMesh>(&renderer->memory.scene, count);
+  Array<Animation> animation = arena_array_zeroed<Animation>(&renderer->memory.scene, 1);
   for (std::uint32_t part = 0; part < count; ++part) {
     nodes[part] = Node();
     MovingMesh mesh;
@@ -177,7 +177,7 @@ Status add_parts(const Request& q, Renderer* renderer) {
 }
 
 pocketray_result load_scene(const Request& q, bool copies, Renderer* renderer) {
-  Arena* arena = &renderer->scene_arena;
+  Arena* arena = &renderer->memory.scene;
   if (q.builtin) {
     q.builtin->build(arena, &renderer->scene);
     CHECK_LE(arena->used, q.builtin->need());
@@ -201,18 +201,19 @@ pocketray_result plan_request(const Request& q, const SceneStorage& storage, Ren
   if (index > 0 && index >= scene.cameras.count)
     return refuse(POCKETRAY_ERROR_ARGUMENT,
                   failure("there is no camera %u: the scene has %u, counted from 0", index, scene.cameras.count));
-  renderer->camera_index = index;
-  renderer->accel_info = q.accel;
-  renderer->light_count_max = q.options.light_count_max;
-  renderer->recolorable = q.options.recolorable != 0;
+  renderer->view.camera_index = index;
+  renderer->accel.info = q.accel;
+  renderer->lights.count_max = q.options.light_count_max;
+  renderer->materials.recolorable = q.options.recolorable != 0;
   Status status = plan_renderer(renderer, storage, progressive_need(q.settings));
-  if (renderer->memory.total_bytes == SIZE_MAX) status = failure("the scene needs more memory than this CPU addresses");
-  bool too_small =
-      renderer->memory.total_bytes == SIZE_MAX || renderer->memory.total_bytes > renderer->memory.limit_bytes;
+  if (renderer->memory.plan.total_bytes == SIZE_MAX)
+    status = failure("the scene needs more memory than this CPU addresses");
+  bool too_small = renderer->memory.plan.total_bytes == SIZE_MAX ||
+                   renderer->memory.plan.total_bytes > renderer->memory.plan.limit_bytes;
   if (!status.ok) return refuse(too_small ? POCKETRAY_ERROR_MEMORY : POCKETRAY_ERROR_SCENE, status);
-  if (renderer->light_count_max && renderer->light_count_max < scene.lights.count)
+  if (renderer->lights.count_max && renderer->lights.count_max < scene.lights.count)
     return refuse(POCKETRAY_ERROR_ARGUMENT, failure("light_count_max is %u, the scene already has %u lights",
-                                                    renderer->light_count_max, scene.lights.count));
+                                                    renderer->lights.count_max, scene.lights.count));
   return POCKETRAY_OK;
 }
 
@@ -249,7 +250,7 @@ pocketray_result build(const Request& q, pocketray_instance* instance) {
     stop_workers(renderer->workers);
     return refuse(POCKETRAY_ERROR_SCENE, status);
   }
-  instance->tile_spans = arena_array<Span>(&renderer->frame_arena, progressive_spans_max(q.settings));
+  instance->tile_spans = arena_array<Span>(&renderer->memory.frame, progressive_spans_max(q.settings));
   attach_changes(instance);
   return POCKETRAY_OK;
 }
@@ -266,18 +267,18 @@ pocketray_result open_request(const Request& q, void* memory, std::size_t memory
   pocketray_result loaded = load_scene(q, q.source.copy != 0, renderer);
   if (loaded != POCKETRAY_OK) return loaded;
   std::size_t change_bytes = lights_need(q) + overrides_need(q, renderer->scene);
-  if (change_bytes > arena_free(renderer->scene_arena))
+  if (change_bytes > arena_free(renderer->memory.scene))
     return need_more("room for changes", size_sum(memory_bytes, change_bytes), memory_bytes);
   if (q.options.light_count_max) {
-    instance->lights = arena_array<Light>(&renderer->scene_arena, q.options.light_count_max);
-    instance->posed_lights = arena_array<Light>(&renderer->scene_arena, q.options.light_count_max);
+    instance->lights = arena_array<Light>(&renderer->memory.scene, q.options.light_count_max);
+    instance->posed_lights = arena_array<Light>(&renderer->memory.scene, q.options.light_count_max);
   }
   if (moves_nodes(q)) {
-    instance->overrides = arena_array<NodeOverride>(&renderer->scene_arena, renderer->scene.nodes.count);
+    instance->overrides = arena_array<NodeOverride>(&renderer->memory.scene, renderer->scene.nodes.count);
     for (NodeOverride& o : instance->overrides) o = NodeOverride();
   }
   SceneStorage storage;
-  storage.arena_bytes = renderer->scene_arena.used;
+  storage.arena_bytes = renderer->memory.scene.used;
   pocketray_result planned = plan_request(q, storage, renderer);
   if (planned != POCKETRAY_OK) return planned;
   pocketray_result built = build(q, instance);
@@ -288,16 +289,16 @@ pocketray_result open_request(const Request& q, void* memory, std::size_t memory
 }  // namespace
 
 std::size_t instance_need(const Renderer& renderer) {
-  return size_sum(kArenaAlignment + arena_need(sizeof(pocketray_instance)), renderer.memory.total_bytes);
+  return size_sum(kArenaAlignment + arena_need(sizeof(pocketray_instance)), renderer.memory.plan.total_bytes);
 }
 
 void write_plan(const Renderer& renderer, std::size_t scratch_bytes, pocketray_plan* plan) {
   const Scene& scene = renderer.scene;
-  CHECK(renderer.accel_info != nullptr);  // it has been planned
+  CHECK(renderer.accel.info != nullptr);  // it has been planned
   std::memset(static_cast<void*>(plan), 0, sizeof *plan);
   plan->memory_bytes = instance_need(renderer);
   plan->scratch_bytes = scratch_bytes;
-  plan->accelerator = renderer.accel_info->name;
+  plan->accelerator = renderer.accel.info->name;
   plan->vertex_count = scene.positions.count;
   plan->triangle_count = scene.triangles.count;
   plan->material_count = scene.materials.count;
@@ -319,9 +320,9 @@ void write_plan(const Renderer& renderer, std::size_t scratch_bytes, pocketray_p
     static_assert(sizeof e->reason == sizeof d.reason, "a reason is copied whole");
     std::memcpy(e->reason, d.reason, sizeof e->reason);
   }
-  plan->memory_part_count = static_cast<std::uint32_t>(renderer.memory.part_count);
-  for (int i = 0; i < renderer.memory.part_count; ++i)
-    plan->memory_parts[i] = {renderer.memory.parts[i].name, renderer.memory.parts[i].bytes};
+  plan->memory_part_count = static_cast<std::uint32_t>(renderer.memory.plan.part_count);
+  for (int i = 0; i < renderer.memory.plan.part_count; ++i)
+    plan->memory_parts[i] = {renderer.memory.plan.parts[i].name, renderer.memory.plan.parts[i].bytes};
 }
 
 }  // namespace pocketray
@@ -347,7 +348,7 @@ pocketray_result pocketray_make_plan(const pocketray_source* source, const pocke
   pocketray_result loaded = load_scene(q, copies, &renderer);
   if (loaded != POCKETRAY_OK) return loaded;
   SceneStorage storage;
-  storage.arena_bytes = size_sum(q.builtin ? renderer.scene_arena.used : load_need(q, q.source.copy != 0),
+  storage.arena_bytes = size_sum(q.builtin ? renderer.memory.scene.used : load_need(q, q.source.copy != 0),
                                  lights_need(q) + overrides_need(q, renderer.scene));
   pocketray_result planned = plan_request(q, storage, &renderer);
   if (planned != POCKETRAY_OK) return planned;

@@ -108,7 +108,7 @@ pocketray_result pocketray_set_settings(pocketray_instance* instance, const pock
 
 pocketray_result pocketray_get_camera(const pocketray_instance* instance, pocketray_camera* camera) {
   REFUSE_IF_ERROR(POCKETRAY_ERROR_ARGUMENT, check_instance(instance));
-  const Camera& c = instance->renderer.camera;
+  const Camera& c = instance->renderer.view.camera;
   pocketray_camera result = POCKETRAY_CAMERA_INIT;
   from_vec3(c.eye, result.eye);
   from_vec3(c.target, result.target);
@@ -136,10 +136,10 @@ pocketray_result pocketray_use_scene_camera(pocketray_instance* instance, std::u
     return refuse(POCKETRAY_ERROR_ARGUMENT,
                   failure("there is no camera %u: the scene has %u, counted from 0", camera_index, cameras.count));
   float aspect = static_cast<float>(renderer->settings.width) / static_cast<float>(renderer->settings.height);
-  renderer->camera =
-      cameras.empty() ? default_camera(renderer->default_view, renderer->bounds, aspect) : cameras[camera_index];
-  renderer->camera_index = camera_index;
-  renderer->camera_overridden = false;
+  renderer->view.camera =
+      cameras.empty() ? default_camera(renderer->view.by_default, renderer->bounds, aspect) : cameras[camera_index];
+  renderer->view.camera_index = camera_index;
+  renderer->view.camera_overridden = false;
   instance->refining = false;
   return POCKETRAY_OK;
 }
@@ -226,14 +226,14 @@ pocketray_result pocketray_set_node(pocketray_instance* instance, std::uint32_t 
 
 pocketray_result pocketray_get_exposure(const pocketray_instance* instance, float* exposure) {
   REFUSE_IF_ERROR(POCKETRAY_ERROR_ARGUMENT, check_changing(instance, "exposure", exposure));
-  *exposure = instance->renderer.exposure;
+  *exposure = instance->renderer.view.exposure;
   return POCKETRAY_OK;
 }
 
 pocketray_result pocketray_set_exposure(pocketray_instance* instance, float exposure) {
   REFUSE_IF_ERROR(POCKETRAY_ERROR_ARGUMENT, check_instance(instance));
   REFUSE_IF_ERROR(POCKETRAY_ERROR_ARGUMENT, check_limit(Quantity::exposure, static_cast<double>(exposure)));
-  instance->renderer.exposure = exposure;
+  instance->renderer.view.exposure = exposure;
   instance->refining = false;
   return POCKETRAY_OK;
 }
@@ -243,8 +243,8 @@ pocketray_result pocketray_measure_exposure(pocketray_instance* instance, double
   REFUSE_IF_ERROR(POCKETRAY_ERROR_ARGUMENT, check_limit(Quantity::seconds, seconds));
   Renderer* renderer = &instance->renderer;
   instance->refining = false;
-  REFUSE_IF_ERROR(POCKETRAY_ERROR_SCENE, prepare_frame(renderer, seconds));
-  renderer->exposure = measure_exposure(renderer);
-  if (exposure) *exposure = renderer->exposure;
+  REFUSE_IF_ERROR(POCKETRAY_ERROR_SCENE, begin_frame(renderer, {seconds}));
+  renderer->view.exposure = measure_exposure(renderer);
+  if (exposure) *exposure = renderer->view.exposure;
   return POCKETRAY_OK;
 }

@@ -33,8 +33,8 @@ namespace {
 
 // Returns whether the last frame's lights are still valid: nothing moves, and their inputs are unchanged.
 bool is_lit(const Renderer& renderer) {
-  return renderer.lit_mask == renderer.effects.mask && !renderer.pose.positions.count && !renderer.pose.lights.count &&
-         same_lights(renderer.lit_settings, renderer.settings);
+  return renderer.lights.lit_mask == renderer.effects.mask && !renderer.pose.positions.count &&
+         !renderer.pose.lights.count && same_lights(renderer.lights.lit_settings, renderer.settings);
 }
 
 // Chosen: a handheld's screen in a lit room reflects about 2.5 % of its own white.
@@ -44,8 +44,8 @@ constexpr float kDisplayFlare = 2 * 0.025f;
 
 void choose_kernels(Renderer* renderer) {
   renderer->frame.scene = &renderer->scene;
-  renderer->frame.accel_info = renderer->accel_info;
-  renderer->frame.first_rays = renderer->accel_info;
+  renderer->frame.accel_info = renderer->accel.info;
+  renderer->frame.first_rays = renderer->accel.info;
   renderer->frame.first_hits = nullptr;
   renderer->frame.compensation_paths = nullptr;
   renderer->frame.ray_by_ray = false;
@@ -78,26 +78,27 @@ void choose_kernels(Renderer* renderer) {
 }
 
 void light_scene(Renderer* renderer) {
-  CHECK_GT(renderer->exposure, 0);
-  CHECK_LE(renderer->light_points.count, renderer->light_point_count_max);
+  CHECK_GT(renderer->view.exposure, 0);
+  CHECK_LE(renderer->lights.points.count, renderer->lights.point_count_max);
   renderer->frame.beyond_depth = radiance_beyond_depth(renderer->scene.info, renderer->effects.mask);
   if (has(renderer->effects.mask, Effect::environment_shadow) &&
-      renderer->environment_lights->wanted != renderer->settings.environment_shadows)
-    place_environment_lights(renderer->scene, renderer->settings.environment_shadows, renderer->environment_lights);
-  renderer->frame.environment_lights = renderer->environment_lights;
+      renderer->lights.environment->wanted != renderer->settings.environment_shadows)
+    place_environment_lights(renderer->scene, renderer->settings.environment_shadows, renderer->lights.environment);
+  renderer->frame.environment_lights = renderer->lights.environment;
   if (!is_lit(*renderer)) {
     const Array<const Light> lights =
         renderer->pose.lights.count ? Array<const Light>(renderer->pose.lights) : renderer->scene.lights;
     if (has(renderer->effects.mask, Effect::instant_radiosity) && virtual_lights_of(renderer->frame.indirect)->area < 0)
-      measure_walks(renderer->frame, lights, renderer->light_points);
-    place_lights(lights, opened_materials(*renderer), renderer->light_points, &renderer->frame);
-    CHECK_LE(renderer->frame.lights.count, renderer->light_points.count);
+      measure_walks(renderer->frame, lights, renderer->lights.points);
+    place_lights(lights, opened_materials(*renderer), renderer->lights.points, &renderer->frame);
+    CHECK_LE(renderer->frame.lights.count, renderer->lights.points.count);
     if (has(renderer->effects.mask, Effect::area_light)) {
-      place_point_groups(renderer->point_groups, renderer->point_order, renderer->point_place, &renderer->frame);
-      place_light_polygons(opened_materials(*renderer), renderer->light_polygons, &renderer->frame);
+      place_point_groups(renderer->lights.point_groups, renderer->lights.point_order, renderer->lights.point_place,
+                         &renderer->frame);
+      place_light_polygons(opened_materials(*renderer), renderer->lights.polygons, &renderer->frame);
     }
     if (has(renderer->effects.mask, Effect::source_selection))
-      place_light_tree(renderer->light_nodes, renderer->light_order, &renderer->frame);
+      place_light_tree(renderer->lights.nodes, renderer->lights.order, &renderer->frame);
     if (has(renderer->effects.mask, Effect::instant_radiosity)) {
       renderer->frame.cone = {0, 0};  // belongs to the last frame's camera, which the lights' walks ignore
       place_virtual_lights(&renderer->frame);
@@ -105,52 +106,52 @@ void light_scene(Renderer* renderer) {
     bool spawns = has(renderer->effects.mask, Effect::mirror) || has(renderer->effects.mask, Effect::refraction) ||
                   has(renderer->effects.mask, Effect::alpha_blend);
     renderer->frame.radiance_bounds = spawns ? radiance_bounds(renderer->frame) : RadianceBounds{};
-    renderer->lit_settings = renderer->settings;
-    renderer->lit_mask = renderer->effects.mask;
+    renderer->lights.lit_settings = renderer->settings;
+    renderer->lights.lit_mask = renderer->effects.mask;
   }
   if ((renderer->frame.point_groups.groups.count || renderer->frame.light_polygons.count) &&
       renderer->frame.find_shadows)
     renderer->frame.find_shadows = find_lamp_tile_shadows;
-  const float white = 1 / renderer->exposure;
+  const float white = 1 / renderer->view.exposure;
   renderer->frame.selection = {renderer->settings.selective_contrast, white, kDisplayFlare * white};
   FrameData& frame = renderer->frame;
-  frame.left_out_max = 2 * kHalfLevel * renderer->settings.cut_off_levels / renderer->exposure;
+  frame.left_out_max = 2 * kHalfLevel * renderer->settings.cut_off_levels / renderer->view.exposure;
   const bool branches = renderer->settings.ray_depth > 0 && has_branches(opened_scene(*renderer));
-  frame.left_out_slope = branches ? kLevelSlope * frame.left_out_max * renderer->exposure : 0;
+  frame.left_out_slope = branches ? kLevelSlope * frame.left_out_max * renderer->view.exposure : 0;
   CHECK_GE(frame.left_out_max, 0);
-  frame.dark_radiance = kDarkLevels / renderer->exposure;
+  frame.dark_radiance = kDarkLevels / renderer->view.exposure;
 }
 
 void make_tracers(Renderer* renderer) {
-  const std::uint32_t corners = renderer->corners.count / renderer->settings.threads;
+  const std::uint32_t corners = renderer->scratch.corners.count / renderer->settings.threads;
   const std::uint32_t pixels = window_pixel_count(renderer->settings);
   for (std::uint32_t i = 0; i < renderer->tracers.count; ++i) {
     renderer->tracers[i] = make_tracer(renderer->frame);
     if (has(renderer->effects.mask, Effect::undersampling))
-      keep_window({&renderer->window_pixels[i * pixels], pixels}, {&renderer->window_states[i * pixels], pixels},
-                  &renderer->tracers[i]);
-    if (is_interleaved(renderer->effects.mask) && renderer->interleaved_pixels.count) {
+      keep_window({&renderer->scratch.window_pixels[i * pixels], pixels},
+                  {&renderer->scratch.window_states[i * pixels], pixels}, &renderer->tracers[i]);
+    if (is_interleaved(renderer->effects.mask) && renderer->scratch.interleaved_pixels.count) {
       const std::uint32_t count = kept_pixel_count(renderer->settings);
-      keep_interleaved_pixels({&renderer->interleaved_pixels[i * count], count}, &renderer->tracers[i]);
+      keep_interleaved_pixels({&renderer->scratch.interleaved_pixels[i * count], count}, &renderer->tracers[i]);
     }
-    if (renderer->light_entries.count) {
-      const std::uint32_t entries = search_entry_count(renderer->selected_light_max);
-      renderer->tracers[i].light_entries = {&renderer->light_entries[i * entries], entries};
+    if (renderer->scratch.light_entries.count) {
+      const std::uint32_t entries = search_entry_count(renderer->lights.selected_max);
+      renderer->tracers[i].light_entries = {&renderer->scratch.light_entries[i * entries], entries};
     }
     if (has(renderer->effects.mask, Effect::selective) && corners > 0)
-      keep_corner_rows({&renderer->corners[i * corners], corners}, &renderer->tracers[i]);
+      keep_corner_rows({&renderer->scratch.corners[i * corners], corners}, &renderer->tracers[i]);
   }
 }
 
 Status aim_camera(Renderer* renderer) {
-  CHECK(renderer->pose.cameras.empty() || renderer->camera_index < renderer->pose.cameras.count);
-  if (!renderer->camera_overridden && renderer->pose.cameras.count) {
-    renderer->camera = renderer->pose.cameras[renderer->camera_index];
-    if (renderer->look.vertical_fov > 0)
-      renderer->camera.vertical_fov = static_cast<float>(renderer->look.vertical_fov);
+  CHECK(renderer->pose.cameras.empty() || renderer->view.camera_index < renderer->pose.cameras.count);
+  if (!renderer->view.camera_overridden && renderer->pose.cameras.count) {
+    renderer->view.camera = renderer->pose.cameras[renderer->view.camera_index];
+    if (renderer->view.look.vertical_fov > 0)
+      renderer->view.camera.vertical_fov = static_cast<float>(renderer->view.look.vertical_fov);
   }
-  RETURN_IF_ERROR(
-      make_camera_rays(renderer->camera, renderer->settings.width, renderer->settings.height, &renderer->frame.camera));
+  RETURN_IF_ERROR(make_camera_rays(renderer->view.camera, renderer->settings.width, renderer->settings.height,
+                                   &renderer->frame.camera));
   if (has(renderer->effects.mask, Effect::mip_map))
     renderer->frame.cone = pixel_cone(renderer->frame.camera, renderer->settings.samples_per_pixel);
   renderer->frame.eye_media = MediumStack();

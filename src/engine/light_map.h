@@ -45,7 +45,7 @@ const char* mapped_light_unfit(const Renderer& renderer);
 // "light maps: ".
 const char* light_map_unfit(const Renderer& renderer);
 
-// Number of first hits that the frame keeps for later steps: set FrameData::first_hits after prepare_frame().
+// Number of first hits that the frame keeps for later steps: FrameTask::first_hits.
 std::size_t first_hit_count(const Settings& settings);
 
 // Finds the surfaces of mapped pixels, from the frame's first hits in rows above `traced_end`, below it by tracing

@@ -9,12 +9,12 @@ namespace {
 
 // An accelerator without refit is rebuilt, in memory that plan_memory() reserved.
 void follow_motion(Renderer* renderer) {
-  CHECK(renderer->accel_info != nullptr);  // it has been planned
+  CHECK(renderer->accel.info != nullptr);  // it has been planned
   CHECK_EQ(renderer->frame.positions.count, renderer->scene.positions.count);
-  renderer->accel.positions = renderer->frame.positions;
-  if (renderer->accel_info->refit) return renderer->accel_info->refit(&renderer->accel, renderer->accel_data);
-  Arena keep = make_arena("accelerator", renderer->accel_data.data, renderer->accel_data.bytes());
-  renderer->accel_info->build(&renderer->accel, &keep, &renderer->frame_arena);
+  renderer->accel.built.positions = renderer->frame.positions;
+  if (renderer->accel.info->refit) return renderer->accel.info->refit(&renderer->accel.built, renderer->accel.data);
+  Arena keep = make_arena("accelerator", renderer->accel.data.data, renderer->accel.data.bytes());
+  renderer->accel.info->build(&renderer->accel.built, &keep, &renderer->memory.frame);
 }
 
 // If a material would then call for an effect that the opened scene does not, it keeps its last values.
@@ -35,7 +35,7 @@ void pose_at_time(Renderer* renderer, double seconds) {
       has(renderer->effects.mask, Effect::smooth_normal) ? renderer->scene.normals : Array<const Vec3>();
   if (!has(renderer->effects.mask, Effect::animation) || !is_animated(renderer->scene)) return;
   effect_entered<Effect::animation>();
-  pose_at(opened_scene(*renderer), renderer->animation, seconds, &renderer->pose);
+  pose_at(opened_scene(*renderer), renderer->view.animation, seconds, &renderer->pose);
   if (renderer->pose.materials.count) change_posed_materials(renderer);
   if (renderer->pose.positions.count) renderer->frame.positions = renderer->pose.positions;
   if (renderer->frame.normals.count && renderer->pose.normals.count) renderer->frame.normals = renderer->pose.normals;
@@ -55,7 +55,7 @@ void accelerate(Renderer* renderer) {
   if (renderer->pose.positions.count) follow_motion(renderer);
   wait_for_pace(&renderer->pace, 0, start);
   renderer->timings.refit_ms = static_cast<double>(renderer->pace.clock->now_ns() - start) * 1e-6;
-  renderer->frame.accel = renderer->accel;
+  renderer->frame.accel = renderer->accel.built;
 }
 
 }  // namespace pocketray

@@ -1,4 +1,4 @@
-// The steps of prepare_frame(), in order.
+// The steps of begin_frame(), in order.
 #pragma once
 #include "engine/renderer.h"
 
@@ -16,5 +16,10 @@ void light_scene(Renderer* renderer);
 Status aim_camera(Renderer* renderer);
 // Makes the threads' tracers, with their memory.
 void make_tracers(Renderer* renderer);
+// Follows the frame as far as its purpose, the settings and the memory plan allow, and finds what may have changed.
+void begin_history(Renderer* renderer, const FrameTask& task);
+
+// Sets up the renderer's coherence, if planned; a step of build_renderer().
+void make_history(Renderer* renderer);
 
 }  // namespace pocketray

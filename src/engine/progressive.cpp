@@ -146,7 +146,6 @@ bool advance_progressive(Renderer* renderer, Array<Span> tile_spans, std::uint64
   Refinement refinement = {renderer, tile_spans, progressive};
   SpanSource source = {&refinement, next_tiles, finish_tiles, fill_cells};
   source.deadline_ns = deadline_ns;
-  source.is_coherent = progressive->is_coherent;
   return trace_frame(renderer, source);
 }
 

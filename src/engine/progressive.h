@@ -20,7 +20,6 @@ struct Progressive {
   std::uint64_t pixels_traced = 0;               // without repetitions
   std::uint64_t trace_ns = 0;
   bool is_afresh = false;           // no pixel of a coarser grid is in the picture
-  bool is_coherent = false;         // completes a frame begun by begin_coherent()
   std::uint64_t* row_ns = nullptr;  // receives the costs of the picture's rows, added; null: not wanted
 };
 
@@ -38,7 +37,7 @@ inline std::size_t progressive_need(const Settings& settings) {
 }
 
 // Traces until about `deadline_ns` by the pace's clock, at least a few tiles per thread. Returns true when the frame is
-// finished. To begin a new frame, call prepare_frame() and pass a default Progressive, or afresh().
+// finished. To begin a new frame, call begin_frame() and pass a default Progressive, or afresh().
 bool advance_progressive(Renderer* renderer, Array<Span> tile_spans, std::uint64_t deadline_ns,
                          Progressive* progressive);
 // Number of finished rows, from the top.

@@ -7,13 +7,13 @@ namespace pocketray {
 
 // Number of materials that memory for a copy is planned for.
 inline std::uint32_t recolorable_count(const Renderer& renderer) {
-  return renderer.recolorable ? renderer.scene.materials.count : 0;
+  return renderer.materials.recolorable ? renderer.scene.materials.count : 0;
 }
 // Copies the scene's materials, if memory is planned for it; a step of build_renderer().
 void make_recolorable(Renderer* renderer);
 
 inline Array<const Material> opened_materials(const Renderer& renderer) {
-  return renderer.materials.count ? renderer.opened_materials : renderer.scene.materials;
+  return renderer.materials.current.count ? renderer.materials.opened : renderer.scene.materials;
 }
 inline Scene opened_scene(const Renderer& renderer) {
   Scene scene = renderer.scene;

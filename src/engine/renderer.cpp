@@ -8,9 +8,9 @@
 #include "base/fmath.h"
 #include "base/limit_list.h"
 #include "brdf/brdf_list.h"
-#include "engine/coherent.h"
 #include "engine/exposure.h"
 #include "engine/frame.h"
+#include "engine/prepare.h"
 #include "engine/recolor.h"
 #include "plan/place_light_polygons.h"
 #include "plan/plan_effects.h"
@@ -30,32 +30,36 @@ namespace {
 void add_what_is_missing(Renderer* renderer) {
   Scene& scene = renderer->scene;
   float aspect = static_cast<float>(renderer->settings.width) / static_cast<float>(renderer->settings.height);
-  if (renderer->look.has_background || renderer->look.environment == EnvironmentChoice::none)
+  if (renderer->view.look.has_background || renderer->view.look.environment == EnvironmentChoice::none)
     leave_out_environment(&scene);
   renderer->bounds = scene_bounds(scene);
   const bool has_default_lights = !has_light(scene) || scene.info.default_lights != 0;
-  if (scene.cameras.empty() || has_default_lights) renderer->default_view = find_default_view(scene, renderer->bounds);
+  if (scene.cameras.empty() || has_default_lights)
+    renderer->view.by_default = find_default_view(scene, renderer->bounds);
   if (scene.cameras.empty()) {
     scene.info.default_camera = 1;
-    renderer->camera = default_camera(renderer->default_view, renderer->bounds, aspect, renderer->look.vertical_fov);
+    renderer->view.camera =
+        default_camera(renderer->view.by_default, renderer->bounds, aspect, renderer->view.look.vertical_fov);
   } else {
-    renderer->camera = scene.cameras[renderer->camera_index < scene.cameras.count ? renderer->camera_index : 0];
-    if (renderer->look.vertical_fov > 0)
-      renderer->camera.vertical_fov = static_cast<float>(renderer->look.vertical_fov);
+    renderer->view.camera =
+        scene.cameras[renderer->view.camera_index < scene.cameras.count ? renderer->view.camera_index : 0];
+    if (renderer->view.look.vertical_fov > 0)
+      renderer->view.camera.vertical_fov = static_cast<float>(renderer->view.look.vertical_fov);
   }
   if (has_default_lights) {
     scene.info.default_lights = 1;
     scene.info.auto_exposure = 0;
     scene.info.ambient = scene.environment_info.empty() ? default_ambient() : Vec3{0, 0, 0};
     if (is_zero(scene.info.background)) scene.info.background = default_background();
-    default_lights(renderer->default_view, renderer->bounds, renderer->camera, renderer->default_lights);
-    scene.lights = {renderer->default_lights, kDefaultLightCount};
-    if (renderer->look.light == LightChoice::sun) renderer->default_lights[0] = default_sun(), scene.lights.count = 1;
-    if (renderer->look.light == LightChoice::none) scene.lights = {};
+    default_lights(renderer->view.by_default, renderer->bounds, renderer->view.camera, renderer->lights.defaults);
+    scene.lights = {renderer->lights.defaults, kDefaultLightCount};
+    if (renderer->view.look.light == LightChoice::sun)
+      renderer->lights.defaults[0] = default_sun(), scene.lights.count = 1;
+    if (renderer->view.look.light == LightChoice::none) scene.lights = {};
     if (scene.environment_info.count)
-      for (Light& light : renderer->default_lights) light.intensity = light.intensity * kStudioLightShare;
+      for (Light& light : renderer->lights.defaults) light.intensity = light.intensity * kStudioLightShare;
   }
-  if (renderer->look.has_background) scene.info.background = renderer->look.background;
+  if (renderer->view.look.has_background) scene.info.background = renderer->view.look.background;
 }
 
 bool moves(const Renderer& renderer) {
@@ -70,36 +74,36 @@ Arena take_front(Arena* rest, const char* name, std::size_t bytes) {
 }
 
 Status adopt_or_build(Renderer* renderer) {
-  renderer->accel.positions = renderer->scene.positions;
-  renderer->accel.triangles = renderer->scene.triangles;
-  renderer->accel.bounds = renderer->bounds;
-  if (moves(*renderer) && !renderer->accel_info->refit) {
-    renderer->accel_data = arena_array<std::uint8_t>(&renderer->persistent_arena,
-                                                     renderer->accel_info->need(renderer->scene.triangles.count));
-    Arena keep = make_arena("accelerator", renderer->accel_data.data, renderer->accel_data.bytes());
-    renderer->accel_info->build(&renderer->accel, &keep, &renderer->frame_arena);
+  renderer->accel.built.positions = renderer->scene.positions;
+  renderer->accel.built.triangles = renderer->scene.triangles;
+  renderer->accel.built.bounds = renderer->bounds;
+  if (moves(*renderer) && !renderer->accel.info->refit) {
+    renderer->accel.data = arena_array<std::uint8_t>(&renderer->memory.persistent,
+                                                     renderer->accel.info->need(renderer->scene.triangles.count));
+    Arena keep = make_arena("accelerator", renderer->accel.data.data, renderer->accel.data.bytes());
+    renderer->accel.info->build(&renderer->accel.built, &keep, &renderer->memory.frame);
     return success();
   }
   if (renderer->scene.accel.empty()) {
-    renderer->accel_info->build(&renderer->accel, &renderer->persistent_arena, &renderer->frame_arena);
-    renderer->accel_data = {const_cast<std::uint8_t*>(renderer->accel.data.data),
-                            renderer->accel.data.count};  // lies in our arena
+    renderer->accel.info->build(&renderer->accel.built, &renderer->memory.persistent, &renderer->memory.frame);
+    renderer->accel.data = {const_cast<std::uint8_t*>(renderer->accel.built.data.data),
+                            renderer->accel.built.data.count};  // lies in our arena
     return success();
   }
-  if (!moves(*renderer)) return renderer->accel_info->adopt(&renderer->accel, renderer->scene.accel);
-  renderer->accel_data = arena_array<std::uint8_t>(&renderer->persistent_arena, renderer->scene.accel.count);
-  __builtin_memcpy(renderer->accel_data.data, renderer->scene.accel.data, renderer->scene.accel.count);
-  return renderer->accel_info->adopt(&renderer->accel, renderer->accel_data);
+  if (!moves(*renderer)) return renderer->accel.info->adopt(&renderer->accel.built, renderer->scene.accel);
+  renderer->accel.data = arena_array<std::uint8_t>(&renderer->memory.persistent, renderer->scene.accel.count);
+  __builtin_memcpy(renderer->accel.data.data, renderer->scene.accel.data, renderer->scene.accel.count);
+  return renderer->accel.info->adopt(&renderer->accel.built, renderer->accel.data);
 }
 
 Status plan_with(Renderer* renderer, const AccelInfo& accel, const SceneStorage& storage, const OutputNeed& output) {
-  renderer->accel_info = &accel;
-  CoherenceState* coherence = &renderer->coherence_state;
+  renderer->accel.info = &accel;
+  CoherenceState* coherence = &renderer->history.state;
   SceneStorage stored = storage;
   stored.recolorable = recolorable_count(*renderer);
   Status status = plan_memory(renderer->scene, renderer->settings, renderer->effects, accel, stored,
-                              {renderer->light_points.count, renderer->selected_light_max}, output, &renderer->memory,
-                              &coherence->unplanned_because);
+                              {renderer->lights.points.count, renderer->lights.selected_max}, output,
+                              &renderer->memory.plan, &coherence->unplanned_because);
   coherence->planned = !coherence->unplanned_because;
   return status;
 }
@@ -108,9 +112,9 @@ Status plan_with(Renderer* renderer, const AccelInfo& accel, const SceneStorage&
 // default; if that does not fit, the first automatic one that does.
 Status choose_accel(Renderer* renderer, const SceneStorage& storage, const OutputNeed& output) {
   const AccelInfo* baked = accel_of(renderer->scene.accel);
-  if (renderer->accel_info) {
-    if (renderer->accel_info != baked) renderer->scene.accel = {};
-    return plan_with(renderer, *renderer->accel_info, storage, output);
+  if (renderer->accel.info) {
+    if (renderer->accel.info != baked) renderer->scene.accel = {};
+    return plan_with(renderer, *renderer->accel.info, storage, output);
   }
   const AccelInfo* first = baked ? baked : kAccelList[0];
   Status status = plan_with(renderer, *first, storage, output);
@@ -119,7 +123,7 @@ Status choose_accel(Renderer* renderer, const SceneStorage& storage, const Outpu
     if (status.ok || info == first || !info->is_automatic) continue;
     renderer->scene.accel = {};
     status = plan_with(renderer, *info, storage, output);
-    renderer->accel_is_fallback = status.ok;
+    renderer->accel.is_fallback = status.ok;
   }
   return status;
 }
@@ -129,98 +133,99 @@ Status choose_accel(Renderer* renderer, const SceneStorage& storage, const Outpu
 void start_renderer(void* block, std::size_t block_bytes, const Settings& settings, Renderer* renderer) {
   CHECK(renderer != nullptr);
   renderer->settings = settings;
-  renderer->scene_arena = make_arena("scene", block, block_bytes);
+  renderer->memory.scene = make_arena("scene", block, block_bytes);
   renderer->settings.memory_bytes =
-      renderer->scene_arena.capacity;  // aligning the block's start may have lost a few bytes
+      renderer->memory.scene.capacity;  // aligning the block's start may have lost a few bytes
 }
 
 Status plan_renderer(Renderer* renderer, const SceneStorage& storage, const OutputNeed& output) {
   RETURN_IF_ERROR(validate_settings(renderer->settings));
-  if (renderer->camera_index > 0 && renderer->camera_index >= renderer->scene.cameras.count)
-    return failure("there is no camera %u: the scene has %u, counted from 0", renderer->camera_index,
+  if (renderer->view.camera_index > 0 && renderer->view.camera_index >= renderer->scene.cameras.count)
+    return failure("there is no camera %u: the scene has %u, counted from 0", renderer->view.camera_index,
                    renderer->scene.cameras.count);
   for (const Material& m : renderer->scene.materials)  // the file's program may have had more lobes
     if (m.brdf >= kBrdfCount)
       return failure("a material uses glossy lobe %u, this program has %u: bake the scene again", m.brdf, kBrdfCount);
   add_what_is_missing(renderer);
   renderer->effects = plan_effects(renderer->scene, renderer->settings);
-  if (moves(*renderer) && animates_materials(renderer->scene)) renderer->recolorable = true;
+  if (moves(*renderer) && animates_materials(renderer->scene)) renderer->materials.recolorable = true;
   std::uint32_t point_count;
   RETURN_IF_ERROR(light_point_count(renderer->scene, renderer->settings, renderer->effects.mask, &point_count));
-  if (renderer->light_count_max > renderer->scene.lights.count)
-    point_count += renderer->light_count_max - renderer->scene.lights.count;
-  renderer->light_points.count = renderer->light_point_count_max = point_count;
-  const std::uint64_t light_count_max = std::uint64_t(renderer->light_count_max) + renderer->scene.materials.count;
+  if (renderer->lights.count_max > renderer->scene.lights.count)
+    point_count += renderer->lights.count_max - renderer->scene.lights.count;
+  renderer->lights.points.count = renderer->lights.point_count_max = point_count;
+  const std::uint64_t light_count_max = std::uint64_t(renderer->lights.count_max) + renderer->scene.materials.count;
   const bool may_select =
-      renderer->light_count_max > 0 && renderer->settings.light_tolerance > 0 && light_count_max >= kSelectedLightsMin;
-  renderer->selected_light_max = may_select || has(renderer->effects.mask, Effect::source_selection) ? point_count : 0;
+      renderer->lights.count_max > 0 && renderer->settings.light_tolerance > 0 && light_count_max >= kSelectedLightsMin;
+  renderer->lights.selected_max = may_select || has(renderer->effects.mask, Effect::source_selection) ? point_count : 0;
   return choose_accel(renderer, storage, output);
 }
 
 Status build_renderer_unexposed(Renderer* renderer) {
   // So far the scene arena spanned the whole block; from here on each arena has exactly its planned size.
-  Arena rest = renderer->scene_arena;
+  Arena rest = renderer->memory.scene;
   rest.used = arena_need(rest.used);
-  renderer->scene_arena.capacity = renderer->scene_arena.used;
-  renderer->persistent_arena =
-      take_front(&rest, "persistent", renderer->memory.arena_bytes[static_cast<int>(ArenaKind::persistent)]);
-  renderer->frame_arena = take_front(&rest, "frame", renderer->memory.arena_bytes[static_cast<int>(ArenaKind::frame)]);
+  renderer->memory.scene.capacity = renderer->memory.scene.used;
+  renderer->memory.persistent =
+      take_front(&rest, "persistent", renderer->memory.plan.arena_bytes[static_cast<int>(ArenaKind::persistent)]);
+  renderer->memory.frame =
+      take_front(&rest, "frame", renderer->memory.plan.arena_bytes[static_cast<int>(ArenaKind::frame)]);
   CHECK_LE(rest.used, rest.capacity);
 
-  CHECK(renderer->accel_info != nullptr && renderer->image.empty());  // planned, and not built before
+  CHECK(renderer->accel.info != nullptr && renderer->image.empty());  // planned, and not built before
   std::uint64_t start = clock_ns();
   RETURN_IF_ERROR(adopt_or_build(renderer));
-  if (moves(*renderer) && renderer->accel_info->refit && renderer->accel_info->settle)
-    renderer->accel_info->settle(&renderer->accel, renderer->accel_data, renderer->scene.moving_meshes);
+  if (moves(*renderer) && renderer->accel.info->refit && renderer->accel.info->settle)
+    renderer->accel.info->settle(&renderer->accel.built, renderer->accel.data, renderer->scene.moving_meshes);
   renderer->timings.build_ms = static_cast<double>(clock_ns() - start) * 1e-6;
 
-  if (moves(*renderer)) renderer->pose = make_pose(renderer->scene, &renderer->persistent_arena);
+  if (moves(*renderer)) renderer->pose = make_pose(renderer->scene, &renderer->memory.persistent);
   make_recolorable(renderer);
-  const std::size_t used = renderer->persistent_arena.used;
+  const std::size_t used = renderer->memory.persistent.used;
   const EffectMask prepared = prepared_methods(renderer->scene, renderer->settings, renderer->effects.mask);
   renderer->frame.indirect = prepare_indirect(renderer->scene, renderer->settings, prepared,
-                                              &renderer->persistent_arena, &renderer->frame_arena);
-  CHECK_LE(renderer->persistent_arena.used - used, indirect_need(renderer->scene, renderer->settings, prepared).keep);
+                                              &renderer->memory.persistent, &renderer->memory.frame);
+  CHECK_LE(renderer->memory.persistent.used - used, indirect_need(renderer->scene, renderer->settings, prepared).keep);
   if (plans_environment_lights(renderer->scene, renderer->settings))
-    renderer->environment_lights =
-        new (arena_array<EnvironmentLights>(&renderer->persistent_arena, 1).data) EnvironmentLights();
-  if (renderer->light_points.count)
-    renderer->light_points = arena_array<LightPoint>(&renderer->persistent_arena, renderer->light_points.count);
+    renderer->lights.environment =
+        new (arena_array<EnvironmentLights>(&renderer->memory.persistent, 1).data) EnvironmentLights();
+  if (renderer->lights.points.count)
+    renderer->lights.points = arena_array<LightPoint>(&renderer->memory.persistent, renderer->lights.points.count);
   if (has_point_groups(renderer->settings, renderer->effects.mask)) {
-    const std::uint32_t points = renderer->light_point_count_max;
-    renderer->point_groups = arena_array<PointGroup>(&renderer->persistent_arena, points);
-    renderer->point_order = arena_array<std::uint8_t>(&renderer->persistent_arena, points);
-    renderer->point_place = arena_array<std::uint8_t>(&renderer->persistent_arena, points);
+    const std::uint32_t points = renderer->lights.point_count_max;
+    renderer->lights.point_groups = arena_array<PointGroup>(&renderer->memory.persistent, points);
+    renderer->lights.point_order = arena_array<std::uint8_t>(&renderer->memory.persistent, points);
+    renderer->lights.point_place = arena_array<std::uint8_t>(&renderer->memory.persistent, points);
   }
   if (const std::uint32_t polygons = light_polygon_count(renderer->scene, renderer->effects.mask))
-    renderer->light_polygons = arena_array<LightPolygon>(&renderer->persistent_arena, polygons);
-  if (const std::uint32_t lights = renderer->selected_light_max) {
+    renderer->lights.polygons = arena_array<LightPolygon>(&renderer->memory.persistent, polygons);
+  if (const std::uint32_t lights = renderer->lights.selected_max) {
     const std::uint32_t entries = renderer->settings.threads * search_entry_count(lights);
-    renderer->light_nodes = arena_array<LightNode>(&renderer->persistent_arena, lights);
-    renderer->light_order = arena_array<std::uint32_t>(&renderer->persistent_arena, lights);
-    renderer->light_entries = arena_array<LightEntry>(&renderer->persistent_arena, entries);
+    renderer->lights.nodes = arena_array<LightNode>(&renderer->memory.persistent, lights);
+    renderer->lights.order = arena_array<std::uint32_t>(&renderer->memory.persistent, lights);
+    renderer->scratch.light_entries = arena_array<LightEntry>(&renderer->memory.persistent, entries);
   }
-  renderer->tracers = arena_array<Tracer>(&renderer->persistent_arena, renderer->settings.threads);
+  renderer->tracers = arena_array<Tracer>(&renderer->memory.persistent, renderer->settings.threads);
   if (has(renderer->effects.mask, Effect::selective))
-    renderer->corners =
-        arena_array<CellCorner>(&renderer->persistent_arena, selective_corner_count(renderer->settings));
+    renderer->scratch.corners =
+        arena_array<CellCorner>(&renderer->memory.persistent, selective_corner_count(renderer->settings));
   if (is_interleaved(renderer->effects.mask))
-    renderer->interleaved_pixels = arena_array<InterleavedPixel>(
-        &renderer->persistent_arena, renderer->settings.threads * kept_pixel_count(renderer->settings));
+    renderer->scratch.interleaved_pixels = arena_array<InterleavedPixel>(
+        &renderer->memory.persistent, renderer->settings.threads * kept_pixel_count(renderer->settings));
   if (plans_lattice(renderer->settings)) {
     const std::uint32_t count = renderer->settings.threads * window_pixel_count(renderer->settings);
-    renderer->window_pixels = arena_array<Vec3>(&renderer->persistent_arena, count);
-    renderer->window_states = arena_array<std::uint8_t>(&renderer->persistent_arena, count);
+    renderer->scratch.window_pixels = arena_array<Vec3>(&renderer->memory.persistent, count);
+    renderer->scratch.window_states = arena_array<std::uint8_t>(&renderer->memory.persistent, count);
   }
-  renderer->spans = arena_array<Span>(&renderer->persistent_arena, renderer->settings.height);
-  renderer->row_ns = arena_array_zeroed<std::uint64_t>(&renderer->persistent_arena, renderer->settings.height);
+  renderer->spans = arena_array<Span>(&renderer->memory.persistent, renderer->settings.height);
+  renderer->row_ns = arena_array_zeroed<std::uint64_t>(&renderer->memory.persistent, renderer->settings.height);
   renderer->image = arena_array_zeroed<Vec3>(
-      &renderer->persistent_arena, static_cast<std::size_t>(renderer->settings.width) * renderer->settings.height);
+      &renderer->memory.persistent, static_cast<std::size_t>(renderer->settings.width) * renderer->settings.height);
   for (std::uint32_t row = 0; row < renderer->settings.height; ++row)
     renderer->spans[row] = {static_cast<std::uint16_t>(row), 0, static_cast<std::uint16_t>(renderer->settings.width)};
-  renderer->exposure = renderer->scene.info.exposure;
-  RETURN_IF_ERROR(prepare_frame(renderer, 0));
-  make_coherent(renderer);
+  renderer->view.exposure = renderer->scene.info.exposure;
+  RETURN_IF_ERROR(begin_frame(renderer, {0}));
+  make_history(renderer);
   return success();
 }
 
@@ -228,16 +233,17 @@ bool wants_exposure(const Renderer& renderer) { return renderer.scene.info.auto_
 
 Status build_renderer(Renderer* renderer) {
   RETURN_IF_ERROR(build_renderer_unexposed(renderer));
-  if (wants_exposure(*renderer)) renderer->exposure = measure_exposure(renderer);
+  if (wants_exposure(*renderer)) renderer->view.exposure = measure_exposure(renderer);
   return success();
 }
 
 Status plan_without_scene(Renderer* renderer, const OutputNeed& output) {
   RETURN_IF_ERROR(validate_settings(renderer->settings));
-  RETURN_IF_ERROR(plan_output_memory(renderer->settings, output, &renderer->memory));
-  Arena rest = renderer->scene_arena;
-  renderer->scene_arena.capacity = 0;
-  renderer->frame_arena = take_front(&rest, "frame", renderer->memory.arena_bytes[static_cast<int>(ArenaKind::frame)]);
+  RETURN_IF_ERROR(plan_output_memory(renderer->settings, output, &renderer->memory.plan));
+  Arena rest = renderer->memory.scene;
+  renderer->memory.scene.capacity = 0;
+  renderer->memory.frame =
+      take_front(&rest, "frame", renderer->memory.plan.arena_bytes[static_cast<int>(ArenaKind::frame)]);
   return success();
 }
 
@@ -253,11 +259,11 @@ Status change_settings(Renderer* renderer, const Settings& settings) {
   EffectPlan effects = plan_effects(scene, settings);
   std::uint32_t point_count;
   RETURN_IF_ERROR(light_point_count(scene, settings, effects.mask, &point_count));
-  if (point_count > renderer->light_point_count_max)
+  if (point_count > renderer->lights.point_count_max)
     return failure("the lights need %u points, memory is planned for %u: plan for that many", point_count,
-                   renderer->light_point_count_max);
+                   renderer->lights.point_count_max);
   // Room kept for more lights would hold the points, but not their groups.
-  if (has_point_groups(settings, effects.mask) && renderer->point_groups.empty())
+  if (has_point_groups(settings, effects.mask) && renderer->lights.point_groups.empty())
     return failure("memory is planned for at most %u points per area light: plan for %u", kUndividedMax,
                    settings.points_per_area_light);
   if (has(effects.mask, Effect::instant_radiosity) && !virtual_lights_of(renderer->frame.indirect))
@@ -265,25 +271,25 @@ Status change_settings(Renderer* renderer, const Settings& settings) {
   if (has(effects.mask, Effect::radiosity) && is_smooth_on_triangles(settings.reconstruction) &&
       !has_gradients(renderer->scene, renderer->frame.indirect))
     return failure("memory is planned without gradients of stored light: plan with --reconstruction cubic");
-  if (has(effects.mask, Effect::environment_shadow) && !renderer->environment_lights)
+  if (has(effects.mask, Effect::environment_shadow) && !renderer->lights.environment)
     return failure("memory is planned without shadows from the environment: plan with --environment-shadows above 0");
-  if (has(effects.mask, Effect::source_selection) && renderer->light_entries.empty())
+  if (has(effects.mask, Effect::source_selection) && renderer->scratch.light_entries.empty())
     return failure("memory is planned for shadow rays to all lights: plan with a --light-tolerance above 0");
-  if (has(effects.mask, Effect::undersampling) && renderer->window_pixels.empty())
+  if (has(effects.mask, Effect::undersampling) && renderer->scratch.window_pixels.empty())
     return failure("memory is planned for all pixels to be traced: plan with --resolution half");
   std::size_t memory_bytes = now.memory_bytes;
   renderer->settings = settings;
   renderer->settings.memory_bytes = memory_bytes;
   renderer->effects = effects;
-  renderer->light_points.count = point_count;
+  renderer->lights.points.count = point_count;
   return success();
 }
 
 Status set_camera(Renderer* renderer, const Camera& camera) {
   CameraRays rays;
   RETURN_IF_ERROR(make_camera_rays(camera, renderer->settings.width, renderer->settings.height, &rays));
-  renderer->camera = camera;
-  renderer->camera_overridden = true;
+  renderer->view.camera = camera;
+  renderer->view.camera_overridden = true;
   return success();
 }
 
@@ -305,8 +311,8 @@ Tracer total_counts(const Renderer& renderer) {
 bool probe_exposure(Renderer* renderer, ExposureProbe* p, std::uint32_t pixel_count_max, std::uint32_t* pixel_count,
                     float* exposure) {
   CHECK(pixel_count != nullptr && exposure != nullptr);
-  forget_frame(&renderer->coherence);  // the probe leaves its pixels in the image
-  constexpr float kGrey = 0.18f;       // the key of [Reinhard et al. 2002] sec. 3
+  forget_last_frame(&renderer->history);  // the probe leaves its pixels in the image
+  constexpr float kGrey = 0.18f;          // the key of [Reinhard et al. 2002] sec. 3
   // Chosen: every hundredth pixel, 768 of 320×240. More would delay the first frame, fewer would miss small lights.
   constexpr std::uint32_t kStep = 10;
   auto places = [](std::uint32_t side) { return (side + kStep / 2 - 1) / kStep; };

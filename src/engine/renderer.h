@@ -1,39 +1,15 @@
 // Renderer: one scene, planned and accelerated in one block of memory, ready to render frames. It allocates nothing.
 #pragma once
-#include "engine/coherence_trial.h"
+#include "engine/history.h"
 #include "engine/pace.h"
 #include "plan/plan_memory.h"
 #include "scene/animate.h"
 #include "scene/content_hash.h"
-#include "shade/trace_spans.h"
-#include "temporal/coherence.h"
 
 namespace pocketray {
 
 struct Timings {
   double build_ms = 0, pose_ms = 0, refit_ms = 0, trace_ms = 0;
-};
-
-// How the last coherent frame was traced.
-struct CoherenceState {
-  bool planned = false;
-  const char* unplanned_because = "coherence is off";
-  const char* whole_because = nullptr;  // why all pixels were traced; null: only those that may have changed
-  std::uint64_t pixels_traced = 0;
-  ChangeCounts search;  // rays traced to find these
-  double follow_ms = 0, find_ms = 0, keep_ms = 0;
-  CoherenceTrial trial;  // for CoherenceMode::automatic
-};
-
-// The rows of a frame that this renderer may trace; shared_rows.h.
-struct SharedRows {
-  std::uint32_t begin = 0, end = 0;
-  bool records = false;             // the frame is followed
-  bool searched = false;            // the search for changes is complete
-  std::uint32_t tile_row = 0;       // the next to search
-  std::uint32_t known_rows = 0;     // of the last frame ...
-  std::uint64_t known_changes = 0;  // ... and pixels to trace in these
-  Span parts[2 * kThreadCountMax];  // parts of a row, or rows far apart
 };
 
 // Overrides of the scene's look; initially none.
@@ -48,57 +24,84 @@ struct Look {
   double vertical_fov = 0;  // radians, of every perspective camera; 0: the camera's own
 };
 
-struct Renderer {
-  Settings settings;
-  Arena scene_arena, persistent_arena, frame_arena;
-  Scene scene;
-  EffectPlan effects;
-  MemoryPlan memory;
-  const AccelInfo* accel_info = nullptr;  // null until the plan chooses it
-  bool accel_is_fallback = false;         // the default did not fit
-  Accel accel;
-  Array<std::uint8_t> accel_data;  // writable if geometry moves
-  Pose pose;
-  Array<LightPoint> light_points;
-  std::uint32_t light_point_count_max = 0;  // planned
-  std::uint32_t selected_light_max = 0;     // likewise if source selection is planned, otherwise 0
-  Array<PointGroup> point_groups;           // groups of area lights' points
+// Memory as planned, and its arenas.
+struct RendererMemory {
+  MemoryPlan plan;
+  Arena scene, persistent, frame;
+};
+
+struct RendererAccel {
+  const AccelInfo* info = nullptr;  // null until the plan chooses it
+  bool is_fallback = false;         // the default did not fit
+  Accel built;
+  Array<std::uint8_t> data;  // writable if geometry moves
+};
+
+// Memory for the frame's lights, and what they were placed for.
+struct RendererLights {
+  Array<LightPoint> points;
+  std::uint32_t point_count_max = 0;  // planned
+  std::uint32_t selected_max = 0;     // likewise if source selection is planned, otherwise 0
+  std::uint32_t count_max = 0;        // lights that may be set later; their points are planned
+  Array<PointGroup> point_groups;     // groups of area lights' points
   Array<std::uint8_t> point_order, point_place;
-  Array<LightPolygon> light_polygons;
-  Array<LightNode> light_nodes;  // for source selection
-  Array<std::uint32_t> light_order;
-  Array<LightEntry> light_entries;                  // search_entry_count() of them per thread
-  std::uint32_t light_count_max = 0;                // lights that may be set later; their points are planned
-  bool recolorable = false;                         // memory is reserved to change materials
-  Array<Material> materials;                        // the scene's materials, where they may change
-  Array<const Material> opened_materials;           // as the scene was opened; see recolor.h
-  EnvironmentLights* environment_lights = nullptr;  // null: not planned
-  FrameData frame;
-  Array<Span> spans;                           // one per scanline
-  Array<std::uint64_t> row_ns;                 // cost of each scanline in the last frame
-  Array<Tracer> tracers;                       // one per thread
-  Array<CellCorner> corners;                   // for selective rendering, two rows per thread; empty: not planned
-  Array<InterleavedPixel> interleaved_pixels;  // kept_pixel_count() of them per thread; empty: not planned
-  Array<Vec3> window_pixels;                   // for undersampling, one window per thread; empty: not planned
-  Array<std::uint8_t> window_states;
-  Array<Vec3> image;  // width × height, linear
+  Array<LightPolygon> polygons;
+  Array<LightNode> nodes;  // for source selection
+  Array<std::uint32_t> order;
+  EnvironmentLights* environment = nullptr;  // null: not planned
+  Settings lit_settings;                     // the settings that the frame's lights were placed for,
+  EffectMask lit_mask = ~EffectMask(0);      // and the effects; ~0: not placed
+  Light defaults[2];
+};
+
+// Materials that may change between frames; see recolor.h.
+struct RendererMaterials {
+  bool recolorable = false;      // memory is reserved to change materials
+  Array<Material> current;       // the scene's materials, where they may change
+  Array<const Material> opened;  // as the scene was opened
+};
+
+// The moment and the view that the next frame shows.
+struct RendererView {
   Camera camera;
-  Settings lit_settings;                 // the settings that the frame's lights were placed for,
-  EffectMask lit_mask = ~EffectMask(0);  // and the effects; ~0: not placed
   bool camera_overridden = false;
   std::uint32_t camera_index = 0;
   std::uint32_t animation = 0;  // the one that plays; kNone: the rest pose
   float exposure = 1;
-  Timings timings;
-  Coherence coherence;  // set up if planned
-  CoherenceState coherence_state;
-  SharedRows shared_rows;
-  Pace pace;                   // of an emulated device; default: none
+  DefaultView by_default;  // for scenes without cameras or lights
+  Look look;               // set before plan_renderer()
+};
+
+// The threads' working memory; empty parts are not planned.
+struct ThreadScratch {
+  Array<CellCorner> corners;                   // for selective rendering, two rows per thread
+  Array<InterleavedPixel> interleaved_pixels;  // kept_pixel_count() of them per thread
+  Array<Vec3> window_pixels;                   // for undersampling, one window per thread
+  Array<std::uint8_t> window_states;
+  Array<LightEntry> light_entries;  // search_entry_count() of them per thread
+};
+
+struct Renderer {
+  Settings settings;
+  Scene scene;
+  EffectPlan effects;
+  RendererMemory memory;
+  RendererAccel accel;
+  Pose pose;
+  RendererLights lights;
+  RendererMaterials materials;
+  RendererView view;
+  FrameData frame;
+  Array<Span> spans;            // one per scanline
+  Array<std::uint64_t> row_ns;  // cost of each scanline in the last frame
+  Array<Vec3> image;            // width × height, linear
+  Array<Tracer> tracers;        // one per thread
+  ThreadScratch scratch;
   Workers* workers = nullptr;  // null: the caller's thread alone
-  Light default_lights[2];
-  Box bounds;                // of all triangles, at time 0
-  DefaultView default_view;  // for scenes without cameras or lights
-  Look look;                 // set before plan_renderer()
+  History history;
+  Pace pace;  // of an emulated device; default: none
+  Timings timings;
+  Box bounds;  // of all triangles, at time 0
 };
 
 // First step: carves the scene arena out of the block, to load the scene into. The caller keeps ownership of the block,

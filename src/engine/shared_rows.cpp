@@ -3,71 +3,28 @@
 #include <algorithm>
 
 #include "base/check.h"
-#include "engine/coherent.h"
 
 namespace pocketray {
 namespace {
 
-bool records(const Renderer& renderer) { return renderer.shared_rows.records; }
+bool records(const Renderer& renderer) { return renderer.history.records; }
 
 bool find_row(void* context, std::uint32_t thread, std::uint32_t row) {
   Renderer* renderer = static_cast<Renderer*>(context);
-  find_changes(&renderer->coherence, row, thread, &renderer->tracers[thread].stats);
+  find_changes(&renderer->history.coherence, row, thread, &renderer->tracers[thread].stats);
   return true;
-}
-
-bool measure_row(void* context, std::uint32_t, std::uint32_t row) {
-  Renderer* renderer = static_cast<Renderer*>(context);
-  measure_tiles(&renderer->coherence, renderer->frame, row, false);
-  return true;
-}
-
-// For CoherenceMode::automatic, weighed in pixels: a part of a frame has no comparable time. Following and searching
-// cost less than a tenth of tracing the rows (coherence-report).
-void weigh(Renderer* renderer) {
-  const SharedRows& rows = renderer->shared_rows;
-  CoherenceTrial* trial = &renderer->coherence_state.trial;
-  const bool whole = renderer->coherence_state.whole_because != nullptr, in_vain = whole && trial->was_recorded;
-  trial->was_recorded = whole;
-  if (rows.known_rows > 0)
-    rest_after(trial, 10 * rows.known_changes < 9 * std::uint64_t(rows.known_rows) * renderer->settings.width);
-  else if (in_vain)
-    rest_after(trial, false);
 }
 
 }  // namespace
 
-void begin_shared_rows(Renderer* renderer, std::uint32_t row_begin, std::uint32_t row_end) {
-  CHECK_LT(row_begin, row_end);
-  CHECK_LE(row_end, renderer->settings.height);
-  Coherence* c = &renderer->coherence;
-  CoherenceState* state = &renderer->coherence_state;
-  renderer->shared_rows = {row_begin, row_end};
-  state->search = ChangeCounts();
-  state->pixels_traced = 0;
-  SharedRows* rows = &renderer->shared_rows;
-  state->trial.is_cold = false;  // times are not compared
-  rows->records = begin_following(renderer);
-  if (!rows->records) {
-    state->trial.was_recorded = false;
-    return;
-  }
-  std::fill(c->changed.begin(), c->changed.end(), 0);
-  if (!is_unchanged(*c)) {
-    std::fill(c->row_known.begin(), c->row_known.begin() + row_begin, std::uint8_t(0));
-    std::fill(c->row_known.begin() + row_end, c->row_known.end(), std::uint8_t(0));
-  }
-  rows->tile_row = row_begin / kChangeTileSide;
-}
-
 bool is_shared_frame_unchanged(const Renderer& renderer) {
-  return records(renderer) && !renderer.coherence_state.whole_because && is_unchanged(renderer.coherence);
+  return records(renderer) && !renderer.history.state.whole_because && is_unchanged(renderer.history.coherence);
 }
 
 bool search_shared_rows(Renderer* renderer, std::uint32_t pixel_count_max) {
-  SharedRows* rows = &renderer->shared_rows;
-  Coherence* c = &renderer->coherence;
-  if (!rows->records || rows->searched) return true;
+  SharedRows* rows = &renderer->history.rows;
+  Coherence* c = &renderer->history.coherence;
+  if (!records(*renderer) || rows->searched) return true;
   const std::uint32_t end = (rows->end + kChangeTileSide - 1) / kChangeTileSide;
   const std::uint32_t count = std::max(1u, pixel_count_max / (kChangeTileSide * c->plan.width));
   const std::uint32_t stop = std::min(end, rows->tile_row + count);
@@ -84,8 +41,8 @@ bool search_shared_rows(Renderer* renderer, std::uint32_t pixel_count_max) {
 }
 
 std::uint32_t count_pixels(const Renderer& renderer, std::uint32_t row) {
-  CHECK(!records(renderer) || renderer.shared_rows.searched);
-  return records(renderer) ? count_changes(renderer.coherence, row) : renderer.settings.width;
+  CHECK(!records(renderer) || renderer.history.rows.searched);
+  return records(renderer) ? count_changes(renderer.history.coherence, row) : renderer.settings.width;
 }
 
 std::uint32_t end_of_part(const Renderer& renderer, std::uint32_t row, std::uint32_t begin,
@@ -96,7 +53,7 @@ std::uint32_t end_of_part(const Renderer& renderer, std::uint32_t row, std::uint
   if (!records(renderer)) return begin + std::min(pixel_count_max, width - begin);
   std::uint32_t end = begin, count = 0;
   for (; end < width; ++end) {
-    count += is_changed(renderer.coherence, row, end);
+    count += is_changed(renderer.history.coherence, row, end);
     if (count > pixel_count_max) break;
   }
   return end;
@@ -104,7 +61,7 @@ std::uint32_t end_of_part(const Renderer& renderer, std::uint32_t row, std::uint
 
 std::uint32_t listed_rows_max(const Renderer& renderer) {
   if (!records(renderer)) return renderer.settings.height;
-  return static_cast<std::uint32_t>(renderer.coherence.spans.count / line_spans_max(renderer.settings.width));
+  return static_cast<std::uint32_t>(renderer.history.coherence.spans.count / line_spans_max(renderer.settings.width));
 }
 
 SharedSpans list_rows(Renderer* renderer, std::uint32_t row_begin, std::uint32_t row_end) {
@@ -123,20 +80,20 @@ SharedSpans list_ranges(Renderer* renderer, const RowRange* ranges, std::uint32_
   const bool whole = !records(*renderer);
   if (whole && range_count == 1) return {renderer->spans.data + ranges[0].begin, rows};
   CHECK(!whole || rows <= kRangesRowsMax);
-  Coherence* c = &renderer->coherence;
+  Coherence* c = &renderer->history.coherence;
   for (std::uint32_t i = 0; i < range_count; ++i)
     for (std::uint32_t row = ranges[i].begin; row < ranges[i].end; ++row)
       if (whole)
-        renderer->shared_rows.parts[count++] = renderer->spans[row];
+        renderer->history.rows.parts[count++] = renderer->spans[row];
       else
         count += list_changes(*c, row, 0, c->plan.width, c->spans.data + count);
-  return {whole ? renderer->shared_rows.parts : c->spans.data, count};
+  return {whole ? renderer->history.rows.parts : c->spans.data, count};
 }
 
 SharedSpans list_part(Renderer* renderer, std::uint32_t row, std::uint32_t begin, std::uint32_t end) {
   CHECK(begin < end && end <= renderer->settings.width);
-  SharedRows* rows = &renderer->shared_rows;
-  Coherence* c = &renderer->coherence;
+  SharedRows* rows = &renderer->history.rows;
+  Coherence* c = &renderer->history.coherence;
   if (records(*renderer)) {
     const std::uint32_t count = list_changes(*c, row, begin, end, c->spans.data);
     if (count != 1) return {c->spans.data, count};
@@ -149,24 +106,9 @@ SharedSpans list_part(Renderer* renderer, std::uint32_t row, std::uint32_t begin
 void finish_shared_rows(Renderer* renderer, std::uint32_t row_begin, std::uint32_t row_end) {
   CHECK(row_begin <= row_end && row_end <= renderer->settings.height);
   for (std::uint32_t row = row_begin; row < row_end; ++row) {
-    renderer->coherence_state.pixels_traced += count_pixels(*renderer, row);
-    if (renderer->coherence.following) renderer->coherence.row_traced[row] = 1;
+    renderer->history.state.pixels_traced += count_pixels(*renderer, row);
+    if (renderer->history.coherence.following) renderer->history.coherence.row_traced[row] = 1;
   }
-}
-
-void end_shared_rows(Renderer* renderer) {
-  Coherence* c = &renderer->coherence;
-  SharedRows* rows = &renderer->shared_rows;
-  if (!rows->records) return;
-  if (c->following && rows->searched) {
-    stop_recording(*renderer->accel_info, &renderer->frame, renderer->tracers);
-    keep_rows(c, renderer->frame);
-    share_items(renderer->workers, 0, c->tile_rows, measure_row, renderer);
-    weigh(renderer);
-  } else {
-    forget_frame(c);  // cut short before the search was complete, or traced by another source
-  }
-  *rows = SharedRows();
 }
 
 }  // namespace pocketray

@@ -1,21 +1,19 @@
 // Frames whose rows several machines share. This one traces some of the rows, and only what may have changed in those
 // that it also traced in the last frame. Which rows it traces need not be known in advance. The pixels equal those of
 // the frame traced whole, bit for bit.
+//
+// Begin such a frame with FramePurpose::shared_rows, search it, then list and trace rows. With
+// FramePurpose::shared_light all rows are listed whole.
 #pragma once
 #include "engine/frame.h"
 
 namespace pocketray {
 
-// Begins a frame after prepare_frame(), as far as settings and the memory plan allow coherence; drops kept rows outside
-// [row_begin, row_end) unless nothing has changed. Call end_shared_rows() for the previous frame before
-// prepare_frame(); without that call, all rows are traced whole.
-void begin_shared_rows(Renderer* renderer, std::uint32_t row_begin, std::uint32_t row_end);
-
 // Searches rows of about that many pixels for changes. Returns true when all are searched, so that rows can be listed
 // and traced.
 bool search_shared_rows(Renderer* renderer, std::uint32_t pixel_count_max);
 
-// Returns whether every row of the frame equals the last kept frame; after begin_shared_rows().
+// Returns whether every row of the frame equals the last kept frame; after begin_frame().
 bool is_shared_frame_unchanged(const Renderer& renderer);
 
 // Counts the pixels of the row to trace, and those in its columns from `begin` to the returned end: at least one if any
@@ -39,8 +37,5 @@ SharedSpans list_part(Renderer* renderer, std::uint32_t row, std::uint32_t begin
 
 // Marks these rows as finished: all that was listed of them is traced into the image.
 void finish_shared_rows(Renderer* renderer, std::uint32_t row_begin, std::uint32_t row_end);
-
-// Keeps the finished and unchanged rows for the next frame.
-void end_shared_rows(Renderer* renderer);
 
 }  // namespace pocketray

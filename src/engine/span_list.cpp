@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/check.h"
+#include "engine/renderer.h"
 
 namespace pocketray {
 namespace {

@@ -1,9 +1,10 @@
 // Span sources made from a list of spans: a whole frame, bands with progress, or the changed pixels.
 #pragma once
-#include "engine/renderer.h"
 #include "engine/span_source.h"
 
 namespace pocketray {
+
+struct Renderer;
 
 // Spans in any order, none twice; fastest if spans of neighbouring rows are adjacent, from the top. The caller owns the
 // spans and their costs.

@@ -32,16 +32,15 @@ struct SpanBatch {
 };
 
 struct SpanSource {
-  void* context;  // passed to the functions below, which run on the caller's thread
+  void* context = nullptr;  // passed to the functions below, which run on the caller's thread
   // Fills in the next batch.
-  void (*next)(void* context, SpanBatch* batch);
+  void (*next)(void* context, SpanBatch* batch) = nullptr;
   // Receives a finished batch, whose pixels are in the image. Returns true if the frame is complete.
-  bool (*finished)(void* context, const SpanBatch& batch);
+  bool (*finished)(void* context, const SpanBatch& batch) = nullptr;
   // Packs the pixels just traced for display; counts as the batch's work. Null: nothing to do.
   void (*pack)(void* context, const SpanBatch& batch) = nullptr;
 
   Aov aov = Aov::none;
-  bool is_coherent = false;  // its batches complete the last coherent frame; any other source invalidates that
   std::uint64_t deadline_ns =
       kNoDeadline;  // by the source's clock; each call of trace_frame() traces at least one batch
   const std::atomic<bool>* stop = nullptr;  // set: no further batch

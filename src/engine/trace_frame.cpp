@@ -1,6 +1,7 @@
 #include "engine/trace_frame.h"
 
 #include "base/check.h"
+#include "engine/frame.h"
 #include "engine/trace_with.h"
 
 namespace pocketray {
@@ -24,6 +25,7 @@ std::uint64_t keep_pace(Renderer* renderer, const SpanSource& source, const Span
 void trace_batch(Renderer* renderer, const SpanSource& source, SpanBatch* batch) {
   CHECK_LE(worker_thread_count(renderer->workers), renderer->tracers.count);
   CHECK(batch->spans != nullptr);
+  if (!is_followed(renderer->history)) forget_last_frame(&renderer->history);
   std::uint64_t begin_ns = now_ns(*renderer, source);
   batch->done_count =
       trace_with(renderer->workers, {batch->spans, batch->span_count, source.aov, renderer->image.data,
@@ -36,12 +38,7 @@ void trace_batch(Renderer* renderer, const SpanSource& source, SpanBatch* batch)
       source.pace ? source.pace(source.context, *batch, begin_ns) : keep_pace(renderer, source, *batch, begin_ns);
 }
 
-}  // namespace
-
-bool trace_frame(Renderer* renderer, const SpanSource& source) {
-  CHECK(!source.pace == !source.now_ns);
-  CHECK(source.next != nullptr && source.finished != nullptr);
-  if (!source.is_coherent) forget_frame(&renderer->coherence);
+bool trace_batches(Renderer* renderer, const SpanSource& source) {
   do {
     if (source.stop && source.stop->load(std::memory_order_relaxed)) return false;
     SpanBatch batch;
@@ -50,6 +47,24 @@ bool trace_frame(Renderer* renderer, const SpanSource& source) {
     if (source.finished(source.context, batch)) return true;
   } while (source.deadline_ns == kNoDeadline || now_ns(*renderer, source) < source.deadline_ns);
   return false;
+}
+
+}  // namespace
+
+bool trace_frame(Renderer* renderer, const SpanSource& source) {
+  CHECK(!source.pace == !source.now_ns);
+  CHECK(source.next != nullptr && source.finished != nullptr);
+  History* history = &renderer->history;
+  const Clock& clock = *renderer->pace.clock;
+  const std::uint64_t start = clock.now_ns();
+  const bool complete = trace_batches(renderer, source);
+  history->spent_ns += clock.now_ns() - start;
+  if (complete && history->purpose == FramePurpose::changes) {
+    history->is_complete = true;
+    end_frame(renderer);
+  }
+  renderer->timings.trace_ms = static_cast<double>(history->spent_ns) * 1e-6;
+  return complete;
 }
 
 }  // namespace pocketray

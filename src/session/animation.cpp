@@ -158,7 +158,7 @@ Status begin_animation(const std::string& path, AnimationKind kind, double frame
   a->frames_per_second = frames_per_second, a->frame_count = frame_count;
   platform::FileError error;
   if (!platform::open_writer(path.c_str(), &a->writer, &error)) return failure("%.300s %s", path.c_str(), error.text);
-  Arena* arena = &renderer->frame_arena;
+  Arena* arena = &renderer->memory.frame;
   a->pixels = arena_array<std::uint8_t>(arena, 3 * static_cast<std::size_t>(settings.width) * settings.height);
   if (a->kind == AnimationKind::gif) a->gif = begin_gif(sink_of(a), a->width, a->height, arena);
   if (a->kind == AnimationKind::png) a->png = begin_animated_png(sink_of(a), a->width, a->height, frame_count, arena);

@@ -52,7 +52,7 @@ Status set_environment_if_requested(const std::string& name, Renderer* renderer,
   if (!memory.file.empty()) source->files.push_back(memory.file);
   const std::size_t bytes = arena_need<EnvironmentInfo>(1) + arena_need<std::uint32_t>(memory.texels.size()) +
                             arena_need<Light>(memory.lights.size());
-  Arena* arena = &renderer->scene_arena;
+  Arena* arena = &renderer->memory.scene;
   if (bytes > arena_free(*arena))
     return scene_too_large(name, arena->used + bytes, renderer->settings.memory_bytes, source);
   auto keep = [arena](auto& array) {

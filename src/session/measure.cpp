@@ -6,7 +6,7 @@
 
 #include "base/check.h"
 #include "base/rng.h"
-#include "engine/coherent.h"
+#include "engine/frame.h"
 #include "session/interrupt.h"
 
 namespace pocketray {
@@ -23,7 +23,7 @@ Status render_once(Renderer* renderer, std::uint32_t frame, double* ns_per_pixel
 // Renders the next frame, tracing only what may have changed since the last.
 Status render_next(Renderer* renderer, std::uint32_t frame, double* ns_per_pixel) {
   double seconds = frame / static_cast<double>(renderer->scene.info.frames_per_second);
-  RETURN_IF_ERROR(render_coherent(renderer, seconds, &interrupted));
+  RETURN_IF_ERROR(render_frame(renderer, changes_at(seconds, &interrupted)));
   *ns_per_pixel = renderer->timings.trace_ms * 1e6 / pixel_count(*renderer);
   return success();
 }
@@ -93,16 +93,16 @@ Status measure_frames(Renderer* renderer, Measurement* m) {
   CHECK_EQ(m->ns_per_pixel.size(), m->frame_count_max);
   CHECK_EQ(m->row_ns.size(), std::size_t(renderer->settings.height) * m->frame_count_max);
   double warm_up;
-  m->coherent = renderer->coherence_state.planned;
+  m->coherent = renderer->history.state.planned;
   const auto render = m->coherent ? render_next : render_once;
   RETURN_IF_ERROR(render(renderer, 0, &warm_up));
   for (std::uint32_t frame = 0; frame < m->frame_count_max && !interrupted; ++frame) {
     RETURN_IF_ERROR(render(renderer, frame + m->coherent, &m->ns_per_pixel[frame]));
     if (interrupted) break;
-    m->pixels_traced += m->coherent ? renderer->coherence_state.pixels_traced : renderer->image.count;
-    if (m->coherent && renderer->coherence_state.whole_because != nullptr) {
+    m->pixels_traced += m->coherent ? renderer->history.state.pixels_traced : renderer->image.count;
+    if (m->coherent && renderer->history.state.whole_because != nullptr) {
       ++m->whole_frames;
-      m->whole_because = renderer->coherence_state.whole_because;
+      m->whole_because = renderer->history.state.whole_because;
     }
     for (std::uint32_t row = 0; row < renderer->settings.height; ++row)
       m->row_ns[static_cast<std::size_t>(row) * m->frame_count_max + frame] =
@@ -122,7 +122,7 @@ Status measure_prices(Renderer* renderer, Measurement* m) {
     if (!has(renderer->effects.mask, effect) || interrupted) continue;
     if (effect == Effect::animation) {  // posing and refitting happen before tracing
       double seconds = 1 / static_cast<double>(renderer->scene.info.frames_per_second);
-      RETURN_IF_ERROR(prepare_frame(renderer, seconds));
+      RETURN_IF_ERROR(begin_frame(renderer, {seconds}));
       m->effect_price[i] = (renderer->timings.pose_ms + renderer->timings.refit_ms) * 1e6 / pixel_count(*renderer);
       continue;
     }
@@ -164,7 +164,7 @@ Status measure_sparse(Renderer* renderer, int round_count, SparseCost* costs) {
       spans[i][patches] = sparse_spans(renderer->settings, kSparseFractions[i], patches);
       ns[i][patches].resize(static_cast<std::size_t>(round_count));
     }
-  RETURN_IF_ERROR(prepare_frame(renderer, 0));
+  RETURN_IF_ERROR(begin_frame(renderer, {0}));
   for (int round = 0; round < round_count; ++round)
     for (int i = 0; i < kSparseFractionCount; ++i)
       for (bool patches : {false, true})

@@ -84,31 +84,31 @@ Status open_scene(const CommonOptions& o, const OpenHooks& hooks, OpenScene* ope
   Renderer* renderer = &opened->renderer;
   start_renderer(opened->block, settings.memory_bytes, settings, renderer);
   RETURN_IF_ERROR(set_pace(o, renderer));
-  RETURN_IF_ERROR(parse_look(o, &renderer->look));
-  renderer->camera_index = o.camera_index;
-  renderer->accel_info = find_accel(o.accel);
+  RETURN_IF_ERROR(parse_look(o, &renderer->view.look));
+  renderer->view.camera_index = o.camera_index;
+  renderer->accel.info = find_accel(o.accel);
   opened->source.reading = o.reading;
-  if (o.animation == kNoAnimation) renderer->animation = kNone;
+  if (o.animation == kNoAnimation) renderer->view.animation = kNone;
   SceneStorage storage;
   RETURN_IF_ERROR(hooks.load(o.scene, renderer, &opened->source, &storage));
-  RETURN_IF_ERROR(find_animation(renderer->scene, o.animation, &renderer->animation));
+  RETURN_IF_ERROR(find_animation(renderer->scene, o.animation, &renderer->view.animation));
   RETURN_IF_ERROR(set_environment_if_requested(o.environment, renderer, &opened->source, &storage));
   RETURN_IF_ERROR(check_outputs_of(o, opened->source.files));
   RETURN_IF_ERROR(solve_if_requested(o.scene, renderer, &opened->source, &storage));
   if (hooks.loaded) RETURN_IF_ERROR(hooks.loaded(opened->source, renderer));
   Status planned = hooks.plan(renderer, storage, hooks.output_bytes(settings));
-  if (!planned.ok && renderer->memory.total_bytes > renderer->memory.limit_bytes)
-    opened->source.bytes_wanted = renderer->memory.total_bytes;
+  if (!planned.ok && renderer->memory.plan.total_bytes > renderer->memory.plan.limit_bytes)
+    opened->source.bytes_wanted = renderer->memory.plan.total_bytes;
   if (opened->source.bytes_wanted > 0 && !planned.ok)
     return failure("%s: --memory %zuM", planned.message, (opened->source.bytes_wanted >> 20) + 1);
   RETURN_IF_ERROR(planned);
-  if (!o.fov.empty() && renderer->camera.projection != Projection::perspective)
+  if (!o.fov.empty() && renderer->view.camera.projection != Projection::perspective)
     return failure("--fov is for perspective cameras, and camera %u is orthographic: drop --fov", o.camera_index);
   if (!o.focus.empty()) {
     RETURN_IF_ERROR(find_part(opened->source, o.scene, o.focus, &opened->source.focus));
     const float aspect = static_cast<float>(settings.width) / static_cast<float>(settings.height);
-    const double fov = renderer->look.vertical_fov > 0 ? renderer->look.vertical_fov : kFramingFieldOfView;
-    RETURN_IF_ERROR(set_camera(renderer, focused_camera(renderer->camera, opened->source.focus, aspect, fov)));
+    const double fov = renderer->view.look.vertical_fov > 0 ? renderer->view.look.vertical_fov : kFramingFieldOfView;
+    RETURN_IF_ERROR(set_camera(renderer, focused_camera(renderer->view.camera, opened->source.focus, aspect, fov)));
   }
   if (!o.camera.empty()) {
     Camera camera;
@@ -129,7 +129,7 @@ Status start_scene(OpenScene* opened, const CommonOptions& o) {
   if (choice != ExposureChoice::as_scene)
     renderer->scene.info.auto_exposure = choice == ExposureChoice::measured ? 1.0f : 0.0f;
   RETURN_IF_ERROR(build_renderer(renderer));
-  return change_exposure(factor, &renderer->exposure);
+  return change_exposure(factor, &renderer->view.exposure);
 }
 
 void print_notes(const OpenScene& opened) {
@@ -137,13 +137,13 @@ void print_notes(const OpenScene& opened) {
   std::uint32_t threads = worker_thread_count(opened.renderer.workers), asked = opened.renderer.settings.threads;
   if (!opened.renderer.image.empty() && threads < asked)
     std::fprintf(stderr, "pocketray: the system allows only %u of %u threads; continuing with those\n", threads, asked);
-  if (opened.renderer.accel_is_fallback)
+  if (opened.renderer.accel.is_fallback)
     std::fprintf(
         stderr,
         "pocketray: the accelerator %s does not fit in --memory; using the slower %s. Raise --memory to use %s\n",
-        kAccelList[0]->name, opened.renderer.accel_info->name, kAccelList[0]->name);
+        kAccelList[0]->name, opened.renderer.accel.info->name, kAccelList[0]->name);
   const SceneInfo& info = opened.renderer.scene.info;
-  const LightChoice light = opened.renderer.look.light;
+  const LightChoice light = opened.renderer.view.look.light;
   const char* added = default_light_note(opened.renderer.scene, light);
   if (info.default_camera != 0 && info.default_lights != 0)
     std::fprintf(stderr, "pocketray: the scene has no camera and no light: framing its bounds, %s\n", added);
@@ -154,8 +154,8 @@ void print_notes(const OpenScene& opened) {
   if (info.default_lights == 0 && light != LightChoice::key)
     std::fprintf(stderr, "pocketray: --light changes nothing: the scene or its environment has light\n");
   const Renderer& renderer = opened.renderer;
-  if (renderer.settings.coherence == CoherenceMode::on && !renderer.coherence_state.planned)
-    std::fprintf(stderr, "pocketray: --coherence on has no effect: %s\n", renderer.coherence_state.unplanned_because);
+  if (renderer.settings.coherence == CoherenceMode::on && !renderer.history.state.planned)
+    std::fprintf(stderr, "pocketray: --coherence on has no effect: %s\n", renderer.history.state.unplanned_because);
   if (renderer.scene.triangles.empty()) return;  // a server has the scene
   const UnusedSettings unused = find_unused_settings(renderer.scene, opened.asked);
   for (int i = 0; i < unused.count; ++i) print_note(unused.notes[i]);

@@ -38,7 +38,7 @@ Status start_scene(OpenScene* opened, const CommonOptions& options);
 
 // Bounds of what the camera turns around.
 inline const Box& subject_of(const OpenScene& opened) {
-  return is_empty(opened.source.focus) ? opened.renderer.accel.bounds : opened.source.focus;
+  return is_empty(opened.source.focus) ? opened.renderer.accel.built.bounds : opened.source.focus;
 }
 
 // Multiplies *exposure; fails if the product is out of range.

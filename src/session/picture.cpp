@@ -53,7 +53,7 @@ void pack(const PictureOptions& o, const Renderer& renderer, const PixelFormat& 
     repack_rows(o.packed_format, o.packed, o.packed_line_bytes, width, height, box.top, end, format, rotation, pixels,
                 row_bytes);
   else
-    pack_rows(radiance_of(o, renderer), width, height, box.top, end, renderer.exposure, format, rotation, dither,
+    pack_rows(radiance_of(o, renderer), width, height, box.top, end, renderer.view.exposure, format, rotation, dither,
               pixels, row_bytes);
   if (o.legend && o.legend->text[0])
     draw_legend({pixels, row_bytes, format, width, height, rotation}, box.left, end - kLegendHeight, *o.legend);
@@ -79,7 +79,7 @@ Status encode(Kind kind, const PictureOptions& o, Renderer* renderer, const Byte
        turned = raw && (o.rotation == Rotation::quarter || o.rotation == Rotation::three_quarters);
   const PixelFormat& format = raw ? o.raw_format : kRgb888;
   int row_bytes = (turned ? height : width) * format.bits_per_pixel / 8, rows = turned ? width : height;
-  auto pixels = arena_array<std::uint8_t>(&renderer->frame_arena,
+  auto pixels = arena_array<std::uint8_t>(&renderer->memory.frame,
                                           static_cast<std::size_t>(row_bytes) * static_cast<std::size_t>(rows));
   Rotation rotation = raw ? o.rotation : Rotation::none;
   pack(o, *renderer, format, rotation, raw && o.dither, pixels.data, row_bytes);
@@ -87,7 +87,7 @@ Status encode(Kind kind, const PictureOptions& o, Renderer* renderer, const Byte
   if (raw) encode_raw(pixels.data, row_bytes, row_bytes, rows, sink);
   if (kind == Kind::ppm) encode_ppm(pixels.data, box.width, box.height, sink);
   if (kind == Kind::jpeg) encode_jpeg(pixels.data, box.width, box.height, sink);
-  return kind == Kind::png ? encode_png(pixels.data, box.width, box.height, &renderer->frame_arena, sink) : success();
+  return kind == Kind::png ? encode_png(pixels.data, box.width, box.height, &renderer->memory.frame, sink) : success();
 }
 
 }  // namespace
@@ -132,11 +132,11 @@ bool stores_values(const std::string& path) {
 }
 
 Status write_picture(const char* path, const PictureOptions& options, Renderer* renderer) {
-  std::size_t mark = arena_mark(renderer->frame_arena);
+  std::size_t mark = arena_mark(renderer->memory.frame);
   Status status = write_encoded(path, [&](const ByteSink& sink) {
     return encode(kind_of(options.kind ? options.kind : path), options, renderer, sink);
   });
-  arena_release(&renderer->frame_arena, mark);
+  arena_release(&renderer->memory.frame, mark);
   return status;
 }
 

@@ -50,7 +50,7 @@ Status prepare(const Scene& scene, Renderer* renderer, Block* block) {
     renderer->scene = scene;
     Status planned = plan_renderer(renderer, SceneStorage(), 0);
     if (planned.ok) return build_renderer(renderer);
-    if (renderer->memory.total_bytes <= renderer->memory.limit_bytes || bytes > SIZE_MAX / 4) return planned;
+    if (renderer->memory.plan.total_bytes <= renderer->memory.plan.limit_bytes || bytes > SIZE_MAX / 4) return planned;
     give_block_back(block->bytes);
     block->bytes = nullptr;
   }
@@ -133,9 +133,9 @@ Status solve_if_requested(const std::string& name, Renderer* renderer, SceneSour
   SolvedRadiosity solved;
   RETURN_IF_ERROR(solve_scene(name, renderer->settings.threads, scene, &solved));
   auto* copy =
-      static_cast<std::uint8_t*>(arena_try_allocate(&renderer->scene_arena, solved.memory.size() + kArenaAlignment));
+      static_cast<std::uint8_t*>(arena_try_allocate(&renderer->memory.scene, solved.memory.size() + kArenaAlignment));
   if (!copy)
-    return scene_too_large(name, renderer->scene_arena.used + solved.memory.size(), renderer->settings.memory_bytes,
+    return scene_too_large(name, renderer->memory.scene.used + solved.memory.size(), renderer->settings.memory_bytes,
                            source);
   // The arrays keep their places relative to the block.
   std::memcpy(copy, solved.memory.data(), solved.memory.size());
@@ -145,7 +145,7 @@ Status solve_if_requested(const std::string& name, Renderer* renderer, SceneSour
     array.data = reinterpret_cast<decltype(array.data)>(copy + (bytes - solved.memory.data()));
   });
   source->baked = nullptr, source->baked_bytes = 0;  // it is no longer the file's scene
-  storage->arena_bytes = renderer->scene_arena.used;
+  storage->arena_bytes = renderer->memory.scene.used;
   return success();
 }
 

@@ -12,16 +12,17 @@ Status identify_scene(const SceneSource& source, Renderer* renderer, ContentHash
     *hash = content_hash(source.baked, source.baked_bytes);
     return success();
   }
-  std::size_t byte_count = baked_size(renderer->scene), mark = arena_mark(renderer->scene_arena);
-  auto* bytes = static_cast<std::uint8_t*>(arena_try_allocate(&renderer->scene_arena, byte_count));
+  std::size_t byte_count = baked_size(renderer->scene), mark = arena_mark(renderer->memory.scene);
+  auto* bytes = static_cast<std::uint8_t*>(arena_try_allocate(&renderer->memory.scene, byte_count));
   if (!bytes)
     return failure(
         "identifying the scene to a server takes %.1f MiB but --memory leaves %.1f MiB: use --memory %zuM",
-        static_cast<double>(byte_count) / (1 << 20), static_cast<double>(arena_free(renderer->scene_arena)) / (1 << 20),
-        (renderer->settings.memory_bytes - arena_free(renderer->scene_arena) + byte_count + (1 << 20) - 1) >> 20);
+        static_cast<double>(byte_count) / (1 << 20),
+        static_cast<double>(arena_free(renderer->memory.scene)) / (1 << 20),
+        (renderer->settings.memory_bytes - arena_free(renderer->memory.scene) + byte_count + (1 << 20) - 1) >> 20);
   baked_write(renderer->scene, bytes);
   *hash = content_hash(bytes, byte_count);
-  arena_release(&renderer->scene_arena, mark);
+  arena_release(&renderer->memory.scene, mark);
   return success();
 }
 

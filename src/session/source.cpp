@@ -18,17 +18,17 @@ namespace pocketray {
 namespace {
 
 Status load_builtin(const BuiltinScene& builtin, Renderer* renderer, SceneSource* source, SceneStorage* storage) {
-  if (builtin.need() > arena_free(renderer->scene_arena))
+  if (builtin.need() > arena_free(renderer->memory.scene))
     return scene_too_large(builtin.name, builtin.need(), renderer->settings.memory_bytes, source);
-  builtin.build(&renderer->scene_arena, &renderer->scene);
-  CHECK_LE(renderer->scene_arena.used, builtin.need());
-  storage->arena_bytes = renderer->scene_arena.used;
+  builtin.build(&renderer->memory.scene, &renderer->scene);
+  CHECK_LE(renderer->memory.scene.used, builtin.need());
+  storage->arena_bytes = renderer->memory.scene.used;
   return success();
 }
 
 Status load_baked(const std::string& name, Renderer* renderer, SceneSource* source, SceneStorage* storage) {
   auto take = [renderer](std::uint64_t byte_count) {
-    return static_cast<std::uint8_t*>(arena_try_allocate(&renderer->scene_arena, byte_count));
+    return static_cast<std::uint8_t*>(arena_try_allocate(&renderer->memory.scene, byte_count));
   };
   std::uint8_t* bytes = nullptr;
   std::uint64_t byte_count = 0;
@@ -37,7 +37,7 @@ Status load_baked(const std::string& name, Renderer* renderer, SceneSource* sour
   if (!status.ok) return failure("%.300s %s", name.c_str(), status.message);
   source->baked = bytes;
   source->baked_bytes = static_cast<std::size_t>(byte_count);
-  storage->arena_bytes = renderer->scene_arena.used;
+  storage->arena_bytes = renderer->memory.scene.used;
   status = baked_open(bytes, source->baked_bytes, &renderer->scene);
   return status.ok ? status : failure("%s: %.400s", name.c_str(), status.message);
 }
@@ -45,10 +45,11 @@ Status load_baked(const std::string& name, Renderer* renderer, SceneSource* sour
 #ifdef POCKETRAY_HAVE_IMPORT
 Status load_imported(const std::string& name, Renderer* renderer, SceneSource* source, SceneStorage* storage) {
   ImportedScene imported;
-  const bool with_studio = renderer->look.environment == EnvironmentChoice::as_scene && !renderer->look.has_background;
+  const bool with_studio =
+      renderer->view.look.environment == EnvironmentChoice::as_scene && !renderer->view.look.has_background;
   ImportOptions options;
   apply(source->reading, &options);
-  options.animations = renderer->animation != kNone;
+  options.animations = renderer->view.animation != kNone;
   RETURN_IF_ERROR(import_model(name, options, &imported, with_studio));
   source->warning = imported.warning;
   source->material_names = imported.material_names;
@@ -56,12 +57,12 @@ Status load_imported(const std::string& name, Renderer* renderer, SceneSource* s
   source->files = imported.files;
   // Copies from the heap into the block, in the form that a device would map.
   std::size_t size = baked_size(imported.scene);
-  auto* bytes = static_cast<std::uint8_t*>(arena_try_allocate(&renderer->scene_arena, size));
+  auto* bytes = static_cast<std::uint8_t*>(arena_try_allocate(&renderer->memory.scene, size));
   if (!bytes) return scene_too_large(name, size, renderer->settings.memory_bytes, source);
   baked_write(imported.scene, bytes);
   source->baked = bytes;
   source->baked_bytes = size;
-  storage->arena_bytes = renderer->scene_arena.used;
+  storage->arena_bytes = renderer->memory.scene.used;
   Status status = baked_open(bytes, size, &renderer->scene);
   return status.ok ? status : failure("%s: %.400s", name.c_str(), status.message);
 }

@@ -26,7 +26,7 @@ void add_effects(const EffectPlan& plan, HudText* text) {
 
 // Adds how much of the last frame was traced.
 void add_coherence(const Renderer& renderer, HudText* text) {
-  const CoherenceState& state = renderer.coherence_state;
+  const CoherenceState& state = renderer.history.state;
   if (!state.planned) return;
   if (state.whole_because) {
     char line[200];
@@ -46,7 +46,7 @@ void write_hud(const Renderer& renderer, const Progressive& progressive, CameraM
   text->line_count = 0;
   CHECK_GE(renderer.settings.threads, 1u);
   Tracer counts = total_counts(renderer);
-  const ChangeCounts& search = renderer.coherence_state.search;
+  const ChangeCounts& search = renderer.history.state.search;
   std::uint64_t rays = search.moving_rays + search.static_rays;
   for (std::uint64_t n : counts.rays) rays += n;
   double ns_per_pixel = progressive.pixels_traced
@@ -63,8 +63,8 @@ void write_hud(const Renderer& renderer, const Progressive& progressive, CameraM
   add_hud_line(text, "%.0fk rays  %.2f M/s  %.0fk skipped", static_cast<double>(rays) * 1e-3,
                progressive.trace_ns ? static_cast<double>(rays) * 1e3 / static_cast<double>(progressive.trace_ns) : 0.0,
                static_cast<double>(counts.rays_left_out) * 1e-3);
-  add_hud_line(text, "%.1f of %.0f MiB  %s camera%s", static_cast<double>(renderer.memory.total_bytes) / (1 << 20),
-               static_cast<double>(renderer.memory.limit_bytes) / (1 << 20),
+  add_hud_line(text, "%.1f of %.0f MiB  %s camera%s", static_cast<double>(renderer.memory.plan.total_bytes) / (1 << 20),
+               static_cast<double>(renderer.memory.plan.limit_bytes) / (1 << 20),
                mode == CameraMode::orbit ? "orbit" : "fly", progressive.step > 0 ? "  refining" : "");
   add_coherence(renderer, text);
   add_effects(renderer.effects, text);

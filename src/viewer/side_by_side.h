@@ -23,7 +23,7 @@ struct SideBySideBackend {
   void (*close)(SideBySide* side_by_side);
   // Call with a finished picture: traces the reference for this view and time until about `deadline_ns` of clock_ns(),
   // restarting if view or time differ from the last call's. `picture` numbers the pictures. Settings stay; the renderer
-  // must prepare its next frame. Fails as prepare_frame() does.
+  // must prepare its next frame. Fails as begin_frame() does.
   Status (*advance)(SideBySide* side_by_side, Renderer* renderer, double seconds, std::uint32_t picture,
                     std::uint64_t deadline_ns);
   // Discards the samples; call before view or time change.

@@ -141,7 +141,7 @@ Status refine(Viewer* viewer, Renderer* renderer, ViewerLoop* loop) {
     Quality exact = renderer->settings;
     exact.selective_contrast = 0, exact.resolution = Resolution::full;
     RETURN_IF_ERROR(set_quality(renderer, exact));
-    RETURN_IF_ERROR(prepare_frame(renderer, loop->seconds));
+    RETURN_IF_ERROR(begin_frame(renderer, {loop->seconds}));
     loop->progressive = afresh();
   }
   loop->exact = advance_progressive(renderer, loop->tile_spans, slice_end(*renderer), &loop->progressive);
@@ -161,7 +161,7 @@ Status end_refining(Renderer* renderer, ViewerLoop* loop) {
 
 // Marks the rows from the first to the last that the frame has traced for display.
 void mark_changed_rows(const Renderer& renderer, Progressive* progressive) {
-  const Coherence& c = renderer.coherence;
+  const Coherence& c = renderer.history.coherence;
   for (std::uint32_t row = 0; row < c.tile_rows; ++row) {
     const std::uint64_t* tiles = c.changed.data + std::size_t(row) * c.tile_columns;
     if (std::all_of(tiles, tiles + c.tile_columns, [](std::uint64_t tile) { return tile == 0; })) continue;
@@ -173,30 +173,28 @@ void mark_changed_rows(const Renderer& renderer, Progressive* progressive) {
 // Traces a slice of the picture: all of it, coarse first, or only the changes.
 bool advance_picture(Renderer* renderer, ViewerLoop* loop) {
   Progressive* progressive = &loop->progressive;
-  if (!loop->coherent.all) {
-    bool complete = advance_coherent(renderer, slice_end(*renderer), nullptr, &loop->coherent);
+  History* history = &renderer->history;
+  if (!history->spans.all) {
+    bool complete = trace_frame(renderer, frame_source(renderer, nullptr, slice_end(*renderer)));
     progressive->pixels_traced = renderer->image.count;  // the picture has all of them
-    progressive->trace_ns = loop->prepare_ns + loop->coherent.spent_ns;
+    progressive->trace_ns = history->prepare_ns + history->spent_ns;
     progressive->shown_coarse = true;
     if (complete) mark_changed_rows(*renderer, progressive);
     if (complete) progressive->step = 0;
     return complete;
   }
-  std::uint64_t before = progressive->trace_ns;
   const bool was_visible = progressive->shown_coarse;
   bool complete = advance_progressive(renderer, loop->tile_spans, slice_end(*renderer), progressive);
-  loop->coherent.spent_ns += progressive->trace_ns - before;
-  if (!was_visible && progressive->shown_coarse) loop->coarse_ns = loop->prepare_ns + progressive->trace_ns;
+  if (!was_visible && progressive->shown_coarse) loop->coarse_ns = history->prepare_ns + progressive->trace_ns;
   if (complete) {
-    renderer->coherence_state.pixels_traced = progressive->pixels_traced;
-    finish_coherent(renderer, &loop->coherent);
-    progressive->trace_ns = loop->prepare_ns + loop->coherent.spent_ns;  // total time of the frame
+    history->state.pixels_traced = progressive->pixels_traced;
+    progressive->trace_ns = history->prepare_ns + history->spent_ns;  // total time of the frame
   }
   return complete;
 }
 
-bool is_visible(const ViewerLoop& loop) {
-  return loop.finished || (loop.coherent.all && loop.progressive.shown_coarse);
+bool is_visible(const Renderer& renderer, const ViewerLoop& loop) {
+  return loop.finished || (renderer.history.spans.all && loop.progressive.shown_coarse);
 }
 
 // Returns whether a visible picture is dropped for one with newer input, which would be visible before the rest of this
@@ -204,7 +202,7 @@ bool is_visible(const ViewerLoop& loop) {
 bool coarse_gives_way(const Renderer& renderer, const ViewerLoop& loop) {
   const Progressive& p = loop.progressive;
   if (!p.shown_coarse) return false;
-  if (!loop.coherent.all || p.pixels_traced == 0) return true;
+  if (!renderer.history.spans.all || p.pixels_traced == 0) return true;
   const double pixel_ns = static_cast<double>(p.trace_ns) / static_cast<double>(p.pixels_traced);
   PictureChoice choice;
   choice.left_ns = pixel_ns * static_cast<double>(renderer.image.count - p.pixels_traced);
@@ -219,15 +217,10 @@ Status step_picture(Viewer* viewer, Renderer* renderer, ViewerLoop* loop) {
   bool follow =
       loop->moved && viewer->options.frame_count == 0 && !loop->finished && coarse_gives_way(*renderer, *loop);
   if (follow || (loop->finished && (loop->moved || loop->passed))) {
-    const Clock& clock = *renderer->pace.clock;
-    const std::uint64_t start = clock.now_ns();
     RETURN_IF_ERROR(end_refining(renderer, loop));
-    RETURN_IF_ERROR(prepare_frame(renderer, loop->seconds));
+    RETURN_IF_ERROR(begin_frame(renderer, {loop->seconds, FramePurpose::changes}));
     take_motion(&viewer->motion);
-    loop->prepare_ns = clock.now_ns() - start;
     loop->progressive = Progressive();
-    begin_coherent(renderer, &loop->coherent);
-    loop->progressive.is_coherent = true;
     loop->moved = loop->passed = loop->finished = false;
   }
   if (loop->finished && can_refine(*viewer, *renderer, *loop)) return refine(viewer, renderer, loop);
@@ -239,10 +232,10 @@ Status step_picture(Viewer* viewer, Renderer* renderer, ViewerLoop* loop) {
     if (goes_on(*viewer)) loop->passed = true;
   }
   // The cost of a frame of changes is known at its end; until then the display shows the previous frame's.
-  if (loop->finished || loop->coherent.all) write_picture_lines(*viewer, *renderer, loop);
+  if (loop->finished || renderer->history.spans.all) write_picture_lines(*viewer, *renderer, loop);
   std::uint32_t begin = 0, end = 0;
   take_dirty_rows(&loop->progressive, &begin, &end);
-  show_picture(viewer, *renderer, loop->hud, begin, end, is_visible(*loop));
+  show_picture(viewer, *renderer, loop->hud, begin, end, is_visible(*renderer, *loop));
   return success();
 }
 
@@ -270,7 +263,7 @@ Status step_budgeted(Viewer* viewer, Renderer* renderer, ViewerLoop* loop) {
     RETURN_IF_ERROR(end_refining(renderer, loop));
     RETURN_IF_ERROR(begin_budget_frame(budget, renderer));
     take_motion(&viewer->motion);
-    RETURN_IF_ERROR(render_coherent(renderer, loop->seconds, &interrupted));
+    RETURN_IF_ERROR(render_frame(renderer, changes_at(loop->seconds, &interrupted)));
     traced = clock_ns();
     loop->progressive = {};
     loop->progressive.step = 0;
@@ -350,7 +343,7 @@ Status step_with_servers(Viewer* viewer, Renderer* renderer, ViewerLoop* loop) {
 void pack_picture(const Viewer& viewer, const Renderer& renderer, const Vec3* radiance, int row_begin, int row_end,
                   const platform::Page& page) {
   if (!viewer.picture_merged) {
-    pack_rows(radiance, viewer.width, viewer.height, row_begin, row_end, renderer.exposure, viewer.format,
+    pack_rows(radiance, viewer.width, viewer.height, row_begin, row_end, renderer.view.exposure, viewer.format,
               viewer.rotation, viewer.options.dither, page.pixels, page.line_bytes);
     return;
   }

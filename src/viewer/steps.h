@@ -1,7 +1,7 @@
 // One step of the viewer between two polls of the buttons: renders the next part of a picture, locally or with servers,
 // and shows it.
 #pragma once
-#include "engine/coherent.h"
+#include "engine/frame.h"
 #include "viewer/hud.h"
 #include "viewer/viewer.h"
 
@@ -10,14 +10,12 @@ namespace pocketray {
 struct ViewerLoop {
   CameraControl control;
   Progressive progressive;
-  CoherentFrame coherent;
   Array<Span> tile_spans;
   HudText hud;
   double seconds = 0;                 // animation time
   bool camera_moved = false;          // by the user, since the scene's own camera was shown
   bool moved = false, passed = true;  // camera or time has changed: a new picture is due
   bool finished = false;
-  std::uint64_t prepare_ns = 0;  // for the current picture
   std::uint64_t coarse_ns = 0;   // time until the last picture was visible
   bool dropped = false;          // the last split picture was dropped for a newer one before it was visible
   bool coarse_shown = false;     // the screen shows the current split picture, coarse

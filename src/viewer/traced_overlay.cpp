@@ -5,8 +5,8 @@
 namespace pocketray {
 
 void dim_kept_pixels(const Renderer& renderer, const Canvas& canvas) {
-  if (!renderer.coherence_state.planned || renderer.coherence_state.whole_because) return;
-  const Coherence& coherence = renderer.coherence;
+  if (!renderer.history.state.planned || renderer.history.state.whole_because) return;
+  const Coherence& coherence = renderer.history.coherence;
   CHECK_EQ(static_cast<std::uint32_t>(canvas.width), coherence.plan.width);
   CHECK_EQ(static_cast<std::uint32_t>(canvas.height), coherence.plan.height);
   constexpr int kSide = kChangeTileSide;

@@ -93,7 +93,7 @@ void save_screenshot(Viewer* viewer, Renderer* renderer) {
 
 // Toggles the overlay of traced pixels, or tells why there is none.
 void answer_traced(Viewer* viewer, const Renderer& renderer) {
-  const CoherenceState& coherence = renderer.coherence_state;
+  const CoherenceState& coherence = renderer.history.state;
   char told[200];
   if (!coherence.planned) {
     viewer->traced = false;
@@ -120,12 +120,12 @@ void change_animation(Viewer* viewer, Renderer* renderer, ViewerLoop* loop) {
                             ? "N changes the animation, but only the servers have the scene: start with --animation"
                             : nullptr;
   for (; !refused && viewer->animation_presses > 0; --viewer->animation_presses)
-    renderer->animation = renderer->animation == kNone                       ? 0
-                          : renderer->animation + 1 < scene.animations.count ? renderer->animation + 1
-                                                                             : kNone;
+    renderer->view.animation = renderer->view.animation == kNone                       ? 0
+                               : renderer->view.animation + 1 < scene.animations.count ? renderer->view.animation + 1
+                                                                                       : kNone;
   viewer->animation_presses = 0;
   SealPause pause;  // for the texts
-  tell(viewer, refused ? refused : describe_animation(scene, renderer->animation).c_str());
+  tell(viewer, refused ? refused : describe_animation(scene, renderer->view.animation).c_str());
   if (refused) return;
   loop->passed = true;
   if (viewer->side_by_side) viewer->side_by_side->backend->forget(viewer->side_by_side);
@@ -210,7 +210,7 @@ void take_kept_view(const Viewer& viewer, Renderer* renderer, ViewerLoop* loop) 
   if (viewer.kept.scene_path != viewer.scene_path) return;
   loop->seconds = viewer.kept.seconds;
   if (viewer.kept.animation == kNone || viewer.kept.animation < renderer->scene.animations.count)
-    renderer->animation = viewer.kept.animation;
+    renderer->view.animation = viewer.kept.animation;
   loop->control.mode = viewer.kept.control.mode;
   loop->camera_moved = viewer.kept.camera_moved && set_camera(renderer, viewer.kept.control.camera).ok;
   if (loop->camera_moved) loop->control.camera = viewer.kept.control.camera;
@@ -267,7 +267,7 @@ Status step_scene(Viewer* viewer, Renderer* renderer, ViewerLoop* loop) {
     moved = loop->moved = true;
   }
   viewer->change_mode = viewer->home = false;
-  const bool plays = has(renderer->effects.mask, Effect::animation) && renderer->animation != kNone;
+  const bool plays = has(renderer->effects.mask, Effect::animation) && renderer->view.animation != kNone;
   const bool passes = plays && !viewer->paused && !shows_side_by_side(*viewer);
   if (passes) {
     loop->seconds += static_cast<double>(elapsed);
@@ -375,10 +375,10 @@ Status run_viewer(Viewer* viewer, Renderer* renderer, bool* again) {
   CHECK_EQ(renderer->settings.width, static_cast<std::uint32_t>(viewer->width));
   CHECK_EQ(renderer->settings.height, static_cast<std::uint32_t>(viewer->height));
   ViewerLoop loop;
-  std::size_t mark = arena_mark(renderer->frame_arena);
-  loop.tile_spans = arena_array<Span>(&renderer->frame_arena, progressive_spans_max(renderer->settings));
-  loop.control =
-      make_camera_control(renderer->camera, is_empty(viewer->focus) ? renderer->accel.bounds : viewer->focus);
+  std::size_t mark = arena_mark(renderer->memory.frame);
+  loop.tile_spans = arena_array<Span>(&renderer->memory.frame, progressive_spans_max(renderer->settings));
+  loop.control = make_camera_control(renderer->view.camera,
+                                     is_empty(viewer->focus) ? renderer->accel.built.bounds : viewer->focus);
   take_kept_view(*viewer, renderer, &loop);
   loop.finished = true;  // no picture in progress
   viewer->picture_merged = false;
@@ -394,7 +394,7 @@ Status run_viewer(Viewer* viewer, Renderer* renderer, bool* again) {
     if (viewer->quit || enough) break;
     if (viewer->reload || is_file_changed(*viewer, &viewer->watch)) {
       *again = true;
-      keep_view(viewer, renderer->animation, loop);
+      keep_view(viewer, renderer->view.animation, loop);
       keep_picture(viewer, *renderer);
       viewer->waiting_since_ns = viewer->backend->now_ns();
       break;
@@ -407,7 +407,7 @@ Status run_viewer(Viewer* viewer, Renderer* renderer, bool* again) {
     is_first = false;
     explain_first_picture(viewer, *renderer);
   }
-  arena_release(&renderer->frame_arena, mark);
+  arena_release(&renderer->memory.frame, mark);
   return status;
 }
 

@@ -19,8 +19,8 @@ int main(int argument_count, char** arguments) {
   auto test = make_renderer(built->scene, settings);
   Renderer* renderer = &test->renderer;
   std::printf("effects 0x%" PRIx64 " of 0x%" PRIx64 "\n", renderer->effects.mask, kEffectsBuilt);
-  for (int i = 0; i < renderer->memory.part_count; ++i)
-    std::printf("%s %zu bytes\n", renderer->memory.parts[i].name, renderer->memory.parts[i].bytes);
+  for (int i = 0; i < renderer->memory.plan.part_count; ++i)
+    std::printf("%s %zu bytes\n", renderer->memory.plan.parts[i].name, renderer->memory.plan.parts[i].bytes);
   for (int frame = std::atoi(arguments[2]); frame > 0; --frame)
     if (!render_frame(renderer, 0.5).ok) return 1;
   std::printf("picture %08x\n", picture_hash(renderer->image.data, renderer->image.count));

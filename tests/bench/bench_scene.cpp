@@ -71,7 +71,7 @@ Status load_bench_scene(const std::string& name, const std::string& model_folder
   start_renderer(scene->block.get(), kBlockBytes, Settings(), scene->renderer.get());
   RETURN_IF_ERROR(load_scene(path, scene->renderer.get(), &scene->source, &storage));
   RETURN_IF_ERROR(plan_renderer(scene->renderer.get(), storage, 0));
-  scene->camera = scene->renderer->camera;
+  scene->camera = scene->renderer->view.camera;
   scene->bounds = scene_bounds(scene->scene());
   if (scene->scene().triangles.count == 0) return failure("%s has no triangles", name.c_str());
   return success();

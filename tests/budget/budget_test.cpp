@@ -55,7 +55,7 @@ struct FlightResult {
 // The camera orbits its target by 2° per frame while the scene moves.
 FlightResult fly(Flight* flight, const Front& front, double budget_ns, std::uint32_t frame_count) {
   Renderer* renderer = &flight->test->renderer;
-  CameraControl camera = make_camera_control(flight->scene.cameras[0], renderer->accel.bounds);
+  CameraControl camera = make_camera_control(flight->scene.cameras[0], renderer->accel.built.bounds);
   Governor g;
   double pixels = static_cast<double>(renderer->settings.width) * renderer->settings.height;
   start_governor(front, budget_ns, pixels, 4, false, &g);

@@ -143,7 +143,7 @@ TEST_CASE("coherence_report_has_the_papers_way") {
 // Goal: a frame that differs is an error that names frame and pixel. Method: renderers with different cameras.
 TEST_CASE("coherence_report_names_the_pixel_that_differs") {
   Pair pair = make_pair();
-  Camera camera = pair.whole->renderer.camera;
+  Camera camera = pair.whole->renderer.view.camera;
   camera.eye.x += 0.5f;
   REQUIRE(set_camera(&pair.whole->renderer, camera).ok);
   SequenceRun run;

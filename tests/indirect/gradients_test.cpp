@@ -302,7 +302,7 @@ TEST_CASE("gradients_are_planned_on_request") {
   const Status refused = change_settings(&linear->renderer, settings);
   CHECK_FALSE(refused.ok);
   auto smooth = make_renderer(mesh.scene, settings);
-  REQUIRE(prepare_frame(&smooth->renderer, 0).ok);
+  REQUIRE(begin_frame(&smooth->renderer, {0}).ok);
   const float seen = trace_ray(smooth->renderer, {.6f, .3f, 1}, {0, 0, -1}).x;
   CHECK(seen == mesh.at(0, .3f, .3f, R::cubic));
   settings.reconstruction = R::quadratic;
@@ -315,7 +315,7 @@ TEST_CASE("gradients_are_planned_on_request") {
   CHECK_FALSE(has(turned->renderer.effects.mask, Effect::radiosity));
   settings.indirect = indirect_choice(Effect::radiosity);
   REQUIRE(change_settings(&turned->renderer, settings).ok);
-  REQUIRE(prepare_frame(&turned->renderer, 0).ok);
+  REQUIRE(begin_frame(&turned->renderer, {0}).ok);
   CHECK(trace_ray(turned->renderer, {.6f, .3f, 1}, {0, 0, -1}).x == seen);
   settings.indirect = IndirectChoice::none, settings.forced_off = bit(Effect::radiosity);
   CHECK(make_renderer(mesh.scene, settings)->renderer.frame.indirect.prepared[2] == nullptr);

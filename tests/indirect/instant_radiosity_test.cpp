@@ -281,7 +281,7 @@ TEST_CASE("instant_radiosity_finds_light_that_missed_the_scene_at_first") {
   std::unique_ptr<TestRenderer> t = rendered(room.scene, instant_settings(64));
   REQUIRE(lights_of(*t).count == 0);
   light->position = {0, 0, 0};
-  t->renderer.lit_mask = ~t->renderer.effects.mask;
+  t->renderer.lights.lit_mask = ~t->renderer.effects.mask;
   REQUIRE(render_frame(&t->renderer, 0).ok);
   std::unique_ptr<TestRenderer> fresh = rendered(room.scene, instant_settings(128));
   REQUIRE(lights_of(*t).count >= 64);
@@ -302,12 +302,12 @@ TEST_CASE("instant_radiosity_is_not_followed_by_tables") {
   Room room(true);
   Settings settings = instant_settings(64);
   settings.coherence = CoherenceMode::on;
-  CHECK(rendered(room.scene, settings)->renderer.coherence_state.planned);
+  CHECK(rendered(room.scene, settings)->renderer.history.state.planned);
   settings.coherence_by_tables = true;
   std::unique_ptr<TestRenderer> t = rendered(room.scene, settings);
-  CHECK_FALSE(t->renderer.coherence_state.planned);
-  REQUIRE(t->renderer.coherence_state.unplanned_because != nullptr);
-  CHECK(std::string(t->renderer.coherence_state.unplanned_because).find("pixels share light") != std::string::npos);
+  CHECK_FALSE(t->renderer.history.state.planned);
+  REQUIRE(t->renderer.history.state.unplanned_because != nullptr);
+  CHECK(std::string(t->renderer.history.state.unplanned_because).find("pixels share light") != std::string::npos);
 }
 
 // Goal: virtual lights that memory was not planned for are refused.

@@ -135,7 +135,7 @@ TEST_CASE("radiosity_is_reflected_by_glossy_lobes") {
   auto seen = [&](std::uint32_t brdf, bool unlit, EffectMask off) {
     material.brdf = brdf, material.unlit = unlit, settings.forced_off = off;
     auto test = make_renderer(s.scene, settings);
-    REQUIRE(prepare_frame(&test->renderer, 0).ok);
+    REQUIRE(begin_frame(&test->renderer, {0}).ok);
     return trace_ray(test->renderer, {.5f, .25f, 1}, {0, 0, -1}).x;
   };
   CHECK(seen(kPhong, false, 0) == doctest::Approx(.45));

@@ -5,7 +5,7 @@
 #include <ctime>
 #include <deque>
 
-#include "engine/coherent.h"
+#include "engine/frame.h"
 #include "session/picture.h"
 #include "session/scene_options.h"
 #include "session/sequence_share.h"
@@ -30,7 +30,7 @@ Status measure_frame(double seconds, const char* file, Renderer* renderer, doubl
   picture.kind = file;
   bool complete;
   const double start = now_seconds();
-  RETURN_IF_ERROR(render_coherent(renderer, seconds, nullptr, &complete));
+  RETURN_IF_ERROR(render_frame(renderer, changes_at(seconds), &complete));
   RETURN_IF_ERROR(write_picture(file, picture, renderer));
   *cost = now_seconds() - start;
   return success();

@@ -94,13 +94,13 @@ TEST_CASE("change_settings_refuses_what_was_not_planned") {
   Status refused = change_settings(&test->renderer, more);
   CHECK_FALSE(refused.ok);
   CHECK(std::strstr(refused.message, "plan for that many") != nullptr);
-  const std::uint32_t planned = test->renderer.light_point_count_max;
-  test->renderer.light_point_count_max += 60;  // as with room for more lights
+  const std::uint32_t planned = test->renderer.lights.point_count_max;
+  test->renderer.lights.point_count_max += 60;  // as with room for more lights
   more.points_per_area_light = 9;
   refused = change_settings(&test->renderer, more);
   CHECK_FALSE(refused.ok);
   CHECK(std::strstr(refused.message, "at most 5 points per area light: plan for 9") != nullptr);
-  test->renderer.light_point_count_max = planned;
+  test->renderer.lights.point_count_max = planned;
   Settings wrong = settings;
   wrong.ray_depth = kRayDepthMax + 1;
   CHECK_FALSE(change_settings(&test->renderer, wrong).ok);

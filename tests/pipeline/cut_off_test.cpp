@@ -45,7 +45,8 @@ CutOff compare_cut_off(const Scene& scene, Settings settings) {
       double left = a.image[i][axis], right = b.image[i][axis];
       double difference = std::fabs(left - right) - 1e-6 * right;  // a dozen sums, each rounded at 6e-8
       if (difference > c.difference_max) c.difference_max = difference;
-      int levels = std::abs(srgb_level(a.image[i][axis] * a.exposure) - srgb_level(b.image[i][axis] * b.exposure));
+      int levels =
+          std::abs(srgb_level(a.image[i][axis] * a.view.exposure) - srgb_level(b.image[i][axis] * b.view.exposure));
       if (levels > c.level_difference_max) c.level_difference_max = levels;
     }
   return c;

@@ -147,7 +147,7 @@ TEST_CASE("picture_is_independent_of_progressive_refinement") {
     auto test = make_renderer(generated->scene, settings);
     Renderer& renderer = test->renderer;
     std::vector<Span> spans(progressive_spans_max(settings));
-    REQUIRE(prepare_frame(&renderer, 0.3).ok);
+    REQUIRE(begin_frame(&renderer, {0.3}).ok);
     Progressive progressive;
     int steps = 0;
     while (!advance_progressive(&renderer, {spans.data(), static_cast<std::uint32_t>(spans.size())}, 0, &progressive))

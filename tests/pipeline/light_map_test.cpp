@@ -10,8 +10,6 @@
 
 #include "effect/setting_list.h"
 #include "engine/frame.h"
-#include "engine/span_list.h"
-#include "engine/trace_frame.h"
 #include "scene/builtin_helpers.h"
 #include "support/effort.h"
 #include "support/generated_scene.h"
@@ -38,10 +36,9 @@ struct OwnedMap {
 // Traces a frame of the device, keeping its first hits.
 std::vector<Hit> traced(Renderer* renderer, double seconds = 0) {
   std::vector<Hit> hits(first_hit_count(renderer->settings));
-  REQUIRE(prepare_frame(renderer, seconds).ok);
-  renderer->frame.first_hits = hits.data();
-  SpanList list = whole_frame(renderer);
-  REQUIRE(trace_frame(renderer, list_source(&list)));
+  FrameTask task = {seconds};
+  task.first_hits = hits.data();
+  REQUIRE(render_frame(renderer, task).ok);
   return hits;
 }
 
@@ -52,8 +49,8 @@ std::unique_ptr<OwnedMap> map_of(Renderer* light, Renderer* device, const std::v
   const LightGrid grid = light_grid(device->settings, pitch);
   owned->surfaces.resize(light_count(grid)), owned->lights.resize(light_count(grid));
   take_mapped_surfaces(device, hits.data(), device->settings.height, grid, owned->surfaces.data());
-  light->camera = device->camera, light->camera_overridden = true;
-  REQUIRE(prepare_frame(light, seconds).ok);
+  light->view.camera = device->view.camera, light->view.camera_overridden = true;
+  REQUIRE(begin_frame(light, {seconds}).ok);
   for (std::uint32_t i = 0; i < light_count(grid); ++i) {
     const auto row = static_cast<std::uint16_t>(i / grid.columns * pitch);
     const auto column = static_cast<std::uint16_t>(i % grid.columns * pitch);
@@ -152,7 +149,7 @@ TEST_CASE("light_map_gives_surfaces_their_own_light") {
   const double by_pitch = mean_difference(with(before->map), with(painted(traced(d), 2)->map));
   CAPTURE(by_pitch);
   CHECK(by_pitch < 0.015);
-  Camera camera = d->camera;
+  Camera camera = d->view.camera;
   camera.eye = camera.target + (camera.eye - camera.target) * 0.8f + Vec3{0.1f, 0.1f, 0} * camera.eye.z;
   REQUIRE(set_camera(d, camera).ok);
   const double by_view = mean_difference(with(before->map), with(painted(traced(d), 2)->map));
@@ -187,7 +184,7 @@ TEST_CASE("light_map_stands_in_for_light_at_every_pixel") {
       before = error;
     }
     // From two degrees on.
-    Camera camera = d->camera;
+    Camera camera = d->view.camera;
     camera.eye = camera.target + (camera.eye - camera.target) * 0.98f + Vec3{0.03f, 0.02f, 0} * (camera.eye.z);
     REQUIRE(set_camera(d, camera).ok);
     hits = traced(d);

@@ -21,7 +21,7 @@ std::unique_ptr<TestRenderer> rendered(const Scene& scene, const Look& look, dou
   Renderer* renderer = &test->renderer;
   start_renderer(test->block.get(), settings.memory_bytes, settings, renderer);
   renderer->scene = scene;
-  renderer->look = look;
+  renderer->view.look = look;
   REQUIRE(plan_renderer(renderer, SceneStorage(), 0).ok);
   renderer->workers = start_workers(settings.threads);
   REQUIRE(build_renderer(renderer).ok);
@@ -85,12 +85,12 @@ TEST_CASE("look_sets_the_field_of_view") {
     Look look;
     look.vertical_fov = radians(20);
     auto test = rendered(generated->scene, look, 0.5);
-    CHECK(test->renderer.camera.vertical_fov == static_cast<float>(radians(20)));
-    Camera own = test->renderer.camera;
+    CHECK(test->renderer.view.camera.vertical_fov == static_cast<float>(radians(20)));
+    Camera own = test->renderer.view.camera;
     own.vertical_fov = 1;
     REQUIRE(set_camera(&test->renderer, own).ok);
     REQUIRE(render_frame(&test->renderer, 0.5).ok);
-    CHECK(test->renderer.camera.vertical_fov == 1);
+    CHECK(test->renderer.view.camera.vertical_fov == 1);
     const Picture asked = picture_of(*rendered(generated->scene, look, 0.5));
     for (Camera& camera : generated->cameras) camera.vertical_fov = static_cast<float>(radians(20));
     generated->bind();
@@ -145,7 +145,7 @@ TEST_CASE("look_puts_default_lights_into_a_studio") {
   CHECK(has(in.effects.mask, Effect::environment));
   CHECK_FALSE(has(in.effects.mask, Effect::environment_shadow));
   auto planned = [](const Renderer& renderer, const std::string& part) {
-    return std::any_of(renderer.memory.parts, renderer.memory.parts + renderer.memory.part_count,
+    return std::any_of(renderer.memory.plan.parts, renderer.memory.plan.parts + renderer.memory.plan.part_count,
                        [&](const MemoryPart& p) { return part == p.name; });
   };
   CHECK_FALSE(planned(in, "environment shadows"));

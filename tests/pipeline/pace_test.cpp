@@ -150,7 +150,7 @@ TEST_CASE("pace_keeps_a_fixed_time_per_pixel") {
     // A pixel of each tile is traced twice.
     const double again = grid_side(renderer->settings.width, 8) * grid_side(renderer->settings.height, 8) * kNsPerPixel;
     std::vector<Span> spans(progressive_spans_max(renderer->settings));
-    REQUIRE(prepare_frame(renderer, 0).ok);
+    REQUIRE(begin_frame(renderer, {0}).ok);
     Progressive progressive;
     while (!advance_progressive(renderer, {spans.data(), static_cast<std::uint32_t>(spans.size())}, 0, &progressive)) {
     }

@@ -40,7 +40,7 @@ bool shows_cells(const Renderer& renderer, const Picture& expected, std::uint32_
 // Refines a frame batch by batch and checks the picture after each.
 void check_steps(Renderer* renderer, const Picture& expected, const std::vector<std::uint32_t>& wanted_steps) {
   const std::uint32_t width = renderer->settings.width, height = renderer->settings.height;
-  REQUIRE(prepare_frame(renderer, 0.3).ok);
+  REQUIRE(begin_frame(renderer, {0.3}).ok);
   for (Vec3& pixel : renderer->image) pixel = {-1, -1, -1};
   std::vector<std::uint64_t> row_ns(height, 0);
   Steps steps = {renderer};
@@ -159,7 +159,7 @@ TEST_CASE("threads_divide_rows_by_tiles") {
         CAPTURE(threads);
         settings.threads = threads;
         auto test = make_renderer(built->scene, settings);
-        REQUIRE(prepare_frame(&test->renderer, 0.3).ok);
+        REQUIRE(begin_frame(&test->renderer, {0.3}).ok);
         SpanList list = whole_frame(&test->renderer);
         list.spans += settings.height - row_count, list.span_count = row_count;
         CHECK(trace_frame(&test->renderer, list_source(&list)));
@@ -192,7 +192,7 @@ TEST_CASE("progressive_refines_with_the_work_of_a_direct_frame") {
           settings.threads = threads;
           auto test = make_renderer(built->scene, settings, accel);
           Renderer* renderer = &test->renderer;
-          REQUIRE(prepare_frame(renderer, 0.3).ok);
+          REQUIRE(begin_frame(renderer, {0.3}).ok);
           Steps steps = {renderer};
           while (!steps.progressive.shown_coarse) steps.advance();
           const Work coarse = work_of(*renderer);

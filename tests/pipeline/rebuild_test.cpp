@@ -17,7 +17,7 @@ AccelInfo without_refit(AccelInfo info) {
 }
 
 std::size_t frame_bytes(const Renderer& renderer) {
-  return renderer.memory.arena_bytes[static_cast<int>(ArenaKind::frame)];
+  return renderer.memory.plan.arena_bytes[static_cast<int>(ArenaKind::frame)];
 }
 
 }  // namespace
@@ -36,8 +36,8 @@ TEST_CASE("rebuild_stands_in_for_refit_within_the_plan") {
     Scene scene = generated->scene;
     for (bool baked : {false, true}) {
       INFO(known->name << (baked ? ", baked" : ""));
-      if (baked && usual->renderer.accel.data.empty()) continue;
-      if (baked) scene.accel = usual->renderer.accel.data;
+      if (baked && usual->renderer.accel.built.data.empty()) continue;
+      if (baked) scene.accel = usual->renderer.accel.built.data;
       auto test = make_renderer(scene, settings, &rebuilt);
       Renderer& renderer = test->renderer;
       for (double seconds : {0.0, 0.9, 0.3, 0.3}) {
@@ -47,9 +47,10 @@ TEST_CASE("rebuild_stands_in_for_refit_within_the_plan") {
             b(renderer.image.begin(), renderer.image.end());
         CHECK(same_picture(a, b));
       }
-      CHECK(renderer.frame_arena.used == 0);
-      CHECK(renderer.frame_arena.used_max <= frame_bytes(renderer));
-      CHECK(renderer.persistent_arena.used_max <= renderer.memory.arena_bytes[static_cast<int>(ArenaKind::persistent)]);
+      CHECK(renderer.memory.frame.used == 0);
+      CHECK(renderer.memory.frame.used_max <= frame_bytes(renderer));
+      CHECK(renderer.memory.persistent.used_max <=
+            renderer.memory.plan.arena_bytes[static_cast<int>(ArenaKind::persistent)]);
     }
   }
 }

@@ -53,7 +53,7 @@ void check_sparse_lists(const Scene& scene, Settings settings, Rng* rng) {
     settings.threads = threads;
     auto test = make_renderer(scene, settings);
     Renderer* renderer = &test->renderer;
-    REQUIRE(prepare_frame(renderer, 0.3).ok);
+    REQUIRE(begin_frame(renderer, {0.3}).ok);
     for (double fraction : {0.02, 0.1, 0.5, 0.9}) {
       std::vector<Span> spans = random_spans(settings, rng, fraction);
       CAPTURE(threads);
@@ -120,7 +120,7 @@ struct Subject {
     expected = render_picture(generated->scene, settings, 0);
     test = make_renderer(generated->scene, settings);
     renderer = &test->renderer;
-    REQUIRE(prepare_frame(renderer, 0).ok);
+    REQUIRE(begin_frame(renderer, {0}).ok);
     clear(renderer);
   }
 };

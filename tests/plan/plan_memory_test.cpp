@@ -33,7 +33,7 @@ TEST_CASE("plan_memory_sums_its_parts") {
   for (std::uint32_t features : {0u, kAllFeatures, bit(Feature::emission), bit(Feature::animation)}) {
     auto generated = generate_scene(features, 2);
     auto test = make_renderer(generated->scene, settings_of(features));
-    const MemoryPlan& plan = test->renderer.memory;
+    const MemoryPlan& plan = test->renderer.memory.plan;
     std::size_t sums[3] = {0, 0, 0}, total = 0;
     for (int i = 0; i < plan.part_count; ++i) sums[static_cast<int>(plan.parts[i].arena)] += plan.parts[i].bytes;
     for (int arena = 0; arena < 3; ++arena) {
@@ -50,7 +50,7 @@ TEST_CASE("plan_memory_has_no_part_for_an_absent_effect") {
     auto generated = generate_scene(features, 2);
     Settings settings = settings_of(features);
     settings.forced_off = off;
-    return make_renderer(generated->scene, settings)->renderer.memory;
+    return make_renderer(generated->scene, settings)->renderer.memory.plan;
   };
   CHECK(part_bytes(plan_for(bit(Feature::ambient), 0), "pose") == 0);
   CHECK(part_bytes(plan_for(bit(Feature::ambient), 0), "lights") == 0);
@@ -81,7 +81,7 @@ TEST_CASE("plan_memory_has_encrypted_links_of_their_own") {
     CHECK(part_bytes(plan, "encrypted links") == tls_bytes);
     totals[0][tls_bytes > 0] = plan.total_bytes;
     REQUIRE(
-        plan_memory(generated->scene, renderer.settings, renderer.effects, *renderer.accel_info, {}, {}, need, &plan)
+        plan_memory(generated->scene, renderer.settings, renderer.effects, *renderer.accel.info, {}, {}, need, &plan)
             .ok);
     CHECK(part_bytes(plan, "encrypted links") == tls_bytes);
     totals[1][tls_bytes > 0] = plan.total_bytes;
@@ -98,12 +98,14 @@ TEST_CASE("plan_memory_holds_in_a_run") {
     Renderer& renderer = test->renderer;
     REQUIRE(render_frame(&renderer, 0.5).ok);
     CAPTURE(features);
-    CHECK(renderer.persistent_arena.used_max <= renderer.memory.arena_bytes[static_cast<int>(ArenaKind::persistent)]);
-    CHECK(renderer.frame_arena.used_max <= renderer.memory.arena_bytes[static_cast<int>(ArenaKind::frame)]);
-    CHECK(renderer.frame_arena.used == 0);
+    CHECK(renderer.memory.persistent.used_max <=
+          renderer.memory.plan.arena_bytes[static_cast<int>(ArenaKind::persistent)]);
+    CHECK(renderer.memory.frame.used_max <= renderer.memory.plan.arena_bytes[static_cast<int>(ArenaKind::frame)]);
+    CHECK(renderer.memory.frame.used == 0);
     // The accelerator's need is an upper bound; all else is exact.
-    std::size_t planned = renderer.memory.arena_bytes[static_cast<int>(ArenaKind::persistent)];
-    CHECK(renderer.persistent_arena.used + part_bytes(renderer.memory, "accelerator") + kArenaAlignment >= planned);
+    std::size_t planned = renderer.memory.plan.arena_bytes[static_cast<int>(ArenaKind::persistent)];
+    CHECK(renderer.memory.persistent.used + part_bytes(renderer.memory.plan, "accelerator") + kArenaAlignment >=
+          planned);
   }
 }
 
@@ -124,7 +126,7 @@ TEST_CASE("plan_memory_refusal_names_what_fits") {
     settings.memory_bytes = std::strtoul(message.c_str() + at + 2, nullptr, 10) << 20;
     auto test = make_renderer(generated->scene, settings, nullptr, &status);
     REQUIRE(test);
-    CHECK(prepare_frame(&test->renderer, 0).ok);
+    CHECK(begin_frame(&test->renderer, {0}).ok);
   }
 }
 
@@ -134,7 +136,7 @@ TEST_CASE("plan_memory_takes_the_compact_accelerator_where_the_default_does_not_
   auto generated = generate_scene(bit(Feature::point_light), 5);
   Settings settings = settings_for(0, 16, 12);
   auto plan_of = [&](const AccelInfo* accel) {
-    return make_renderer(generated->scene, settings, accel)->renderer.memory;
+    return make_renderer(generated->scene, settings, accel)->renderer.memory.plan;
   };
   std::size_t bvh = plan_of(&kBvhAccel).total_bytes, compact = plan_of(&kCompactAccel).total_bytes;
   REQUIRE(compact < bvh - kArenaAlignment);
@@ -147,10 +149,10 @@ TEST_CASE("plan_memory_takes_the_compact_accelerator_where_the_default_does_not_
   auto roomy = try_with(bvh, nullptr), tight = try_with(compact, nullptr);
   REQUIRE(roomy);
   REQUIRE(tight);
-  CHECK(roomy->renderer.accel_info == &kBvhAccel);
-  CHECK_FALSE(roomy->renderer.accel_is_fallback);
-  CHECK(tight->renderer.accel_info == &kCompactAccel);
-  CHECK(tight->renderer.accel_is_fallback);
+  CHECK(roomy->renderer.accel.info == &kBvhAccel);
+  CHECK_FALSE(roomy->renderer.accel.is_fallback);
+  CHECK(tight->renderer.accel.info == &kCompactAccel);
+  CHECK(tight->renderer.accel.is_fallback);
   REQUIRE(render_frame(&tight->renderer, 0).ok);
   CHECK(std::memcmp(tight->renderer.image.data, expected.data(), tight->renderer.image.bytes()) == 0);
   CHECK_FALSE(try_with(compact, &kBvhAccel));
@@ -162,14 +164,14 @@ TEST_CASE("plan_memory_takes_the_compact_accelerator_where_the_default_does_not_
 TEST_CASE("plan_memory_is_exact_at_the_edge_for_any_alignment") {
   auto generated = generate_scene(bit(Feature::point_light), 4);
   Settings settings = settings_for(0, 16, 12);
-  std::size_t need = make_renderer(generated->scene, settings)->renderer.memory.total_bytes;
+  std::size_t need = make_renderer(generated->scene, settings)->renderer.memory.plan.total_bytes;
   std::vector<std::uint8_t> block(need + 4 * kArenaAlignment);
   int built = 0, refused = 0;
   for (std::size_t offset = 0; offset < kArenaAlignment; ++offset)
     for (std::size_t less : {0, 1, 63, 64, 128}) {
       Renderer r;
       start_renderer(block.data() + offset, need - less, settings, &r);
-      r.accel_info = &kBvhAccel;
+      r.accel.info = &kBvhAccel;
       r.scene = generated->scene;
       if (!plan_renderer(&r, SceneStorage(), 0).ok) {
         ++refused;
@@ -187,7 +189,7 @@ TEST_CASE("plan_memory_is_exact_at_the_edge_for_any_alignment") {
 TEST_CASE("plan_memory_draws_within_its_buffer") {
   auto generated = generate_scene(kAllFeatures, 3);
   auto test = make_renderer(generated->scene, settings_of(kAllFeatures));
-  const MemoryPlan& plan = test->renderer.memory;
+  const MemoryPlan& plan = test->renderer.memory.plan;
   char whole[4096];
   std::size_t length = draw_memory_plan(plan, whole, sizeof whole);
   CHECK(length == std::strlen(whole));

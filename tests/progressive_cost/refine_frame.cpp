@@ -31,7 +31,7 @@ int main(int argument_count, char** arguments) {
   Settings settings;
   auto test = make_renderer(built->scene, settings);
   Renderer* renderer = &test->renderer;
-  if (!prepare_frame(renderer, 0.5).ok) return 1;
+  if (!begin_frame(renderer, {0.5}).ok) return 1;
   std::vector<Span> spans(progressive_spans_max(settings));
   trace_for_counting(renderer, arguments[2], {spans.data(), static_cast<std::uint32_t>(spans.size())});
   std::printf("picture %08x\n", picture_hash(renderer->image.data, renderer->image.count));

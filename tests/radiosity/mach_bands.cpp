@@ -72,7 +72,7 @@ Surfaces without_grids(Surfaces surfaces) {
 BandsRig::BandsRig(bool total) : total_(total), cube_(build_builtin("cube")) {
   cube_->scene.info.ambient = {0, 0, 0};
   auto test = make_renderer(cube_->scene, settings_of(Reconstruction::bicubic));
-  REQUIRE(prepare_frame(&test->renderer, 0).ok);
+  REQUIRE(begin_frame(&test->renderer, {0}).ok);
   for (std::uint32_t y = 0; y < kBandsHeight; ++y)
     for (std::uint32_t x = 0; x < kBandsWidth; ++x) walls_.push_back(wall_at(test->renderer.frame.camera, x, y));
 }
@@ -100,7 +100,7 @@ std::unique_ptr<TestRenderer> BandsRig::renderer(int cells, Reconstruction recon
     Settings settings;
     settings.width = settings.height = 1, settings.indirect = IndirectChoice::none;
     auto test = make_renderer(cube_->scene, settings);
-    REQUIRE(prepare_frame(&test->renderer, 0).ok);
+    REQUIRE(begin_frame(&test->renderer, {0}).ok);
     RadiosityOptions options;
     options.threads = 2;
     // Cells are as wide as patches, over this. Longest edges of triangles are at most two cells: chosen so that these

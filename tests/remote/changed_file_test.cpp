@@ -75,7 +75,7 @@ TEST_CASE("changed_file_leaves_a_rendered_scene_as_it_was") {
   REQUIRE_MESSAGE(status.ok, status.message);
   CHECK(storage.arena_bytes >= file.bytes.size());  // the plan counts the copy
   REQUIRE(plan_renderer(&renderer, storage, 0).ok);
-  CHECK(renderer.memory.total_bytes <= block.size());
+  CHECK(renderer.memory.plan.total_bytes <= block.size());
   REQUIRE(build_renderer(&renderer).ok);
   REQUIRE(render_frame(&renderer, 0).ok);
   std::vector<Vec3> first(renderer.image.begin(), renderer.image.end());

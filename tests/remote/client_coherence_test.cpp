@@ -38,7 +38,7 @@ TEST_CASE("client_sends_nothing_while_nothing_changes") {
     }
   }
   CHECK(rig.frame(2.2).unchanged);
-  rig.device->renderer.exposure *= 1.5f;
+  rig.device->renderer.view.exposure *= 1.5f;
   CHECK(!rig.frame(2.2).unchanged);
   CHECK(rig.frame(2.2).unchanged);
   // The device alone has rendered in between: the servers' rows of its picture are stale.
@@ -121,7 +121,7 @@ TEST_CASE("client_uses_a_server_that_came_during_short_frames") {
   }
   CHECK(during <= 1.05 * before);
   REQUIRE(rig.client.servers[0].phase == ServerPhase::probing);
-  Camera camera = rig.device->renderer.camera;
+  Camera camera = rig.device->renderer.view.camera;
   int first_used = -1;
   for (int i = 0; i < 8; ++i) {
     camera.eye.x += 0.05f;

@@ -131,7 +131,7 @@ std::string run_frame(FaultWorld* w, SessionResult* result) {
   if (w->stuck) return fail(*w, "a server holds the device", ratio);
   std::string failure = check_lies(*w, result);
   if (!failure.empty()) return failure;
-  const CoherenceState& state = device_renderer(plan)->coherence_state;
+  const CoherenceState& state = device_renderer(plan)->history.state;
   auto keeps = [](const RowModel& row) { return row.holder != kNoHolder && row.holder_part < 1; };
   result->unchanged += w->client.share.unchanged;
   result->device_kept += !state.whole_because && state.pixels_traced < plan.width * w->client.share.device_rows;

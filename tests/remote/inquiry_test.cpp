@@ -124,22 +124,22 @@ TEST_CASE("inquiry_view_is_what_a_device_would_see") {
       Renderer* renderer = &device->renderer;
       if (round == 2) {
         query.camera_stated = true;
-        query.camera = renderer->camera;
-        query.camera.eye = renderer->camera.eye * 0.5f + renderer->camera.target * 0.5f;
+        query.camera = renderer->view.camera;
+        query.camera.eye = renderer->view.camera.eye * 0.5f + renderer->view.camera.target * 0.5f;
         query.camera.node = kNone;
         REQUIRE(set_camera(renderer, query.camera).ok);
       }
-      renderer->exposure = renderer->scene.info.exposure;
-      REQUIRE(prepare_frame(renderer, 0).ok);
-      if (round > 0) renderer->exposure = measure_exposure(renderer);
+      renderer->view.exposure = renderer->scene.info.exposure;
+      REQUIRE(begin_frame(renderer, {0}).ok);
+      if (round > 0) renderer->view.exposure = measure_exposure(renderer);
       ViewEntry entry;
       Status status = ask_view(&rig.inquiry, query, &entry);
       REQUIRE_MESSAGE(status.ok, status.message);
-      CHECK(entry.exposure == renderer->exposure);
-      CHECK(std::memcmp(&entry.camera.eye, &renderer->camera.eye, sizeof(Vec3)) == 0);
-      CHECK(std::memcmp(&entry.camera.target, &renderer->camera.target, sizeof(Vec3)) == 0);
-      CHECK(entry.camera.vertical_fov == renderer->camera.vertical_fov);
-      CHECK(std::memcmp(&entry.bounds, &renderer->accel.bounds, sizeof(Box)) == 0);
+      CHECK(entry.exposure == renderer->view.exposure);
+      CHECK(std::memcmp(&entry.camera.eye, &renderer->view.camera.eye, sizeof(Vec3)) == 0);
+      CHECK(std::memcmp(&entry.camera.target, &renderer->view.camera.target, sizeof(Vec3)) == 0);
+      CHECK(entry.camera.vertical_fov == renderer->view.camera.vertical_fov);
+      CHECK(std::memcmp(&entry.bounds, &renderer->accel.built.bounds, sizeof(Box)) == 0);
       CHECK(entry.effects == renderer->effects.mask);
       CHECK(entry.triangle_count == renderer->scene.triangles.count);
       CHECK(entry.frames_per_second == renderer->scene.info.frames_per_second);

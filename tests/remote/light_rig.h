@@ -49,7 +49,7 @@ inline std::vector<std::uint8_t> ambient_pixels(SplitRig* rig, double seconds) {
 }
 
 inline void turn(Renderer* renderer, float degrees) {
-  Camera camera = renderer->camera;
+  Camera camera = renderer->view.camera;
   const Vec3 way = camera.eye - camera.target;
   const float angle = degrees * kPiF / 180, c = 1 - angle * angle / 2, s = angle;
   camera.eye = camera.target + Vec3{way.x * c + way.z * s, way.y, way.z * c - way.x * s};

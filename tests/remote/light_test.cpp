@@ -61,12 +61,12 @@ TEST_CASE("light_map_has_the_light_of_the_frame") {
           CHECK(map.frame == frame);
           const std::unique_ptr<BuiltScene> built = build_builtin(scene);
           const std::unique_ptr<TestRenderer> here = make_renderer(built->scene, q.settings);
-          REQUIRE(prepare_frame(&here->renderer, q.seconds).ok);
+          REQUIRE(begin_frame(&here->renderer, {q.seconds}).ok);
           const LightGrid grid = light_grid(q.settings, pitch);
           std::vector<Vec3> got(light_count(grid));
           REQUIRE(decode_light(map.bytes.data, map.bytes.count, grid.columns, grid.rows, got.data()));
           const std::vector<Vec3> right = lights_here(&here->renderer, pitch);
-          const float least = 1e-4f / here->renderer.exposure;
+          const float least = 1e-4f / here->renderer.view.exposure;
           int compared = 0;
           for (std::size_t i = 0; i < got.size(); ++i)
             for (int c = 0; right[i].x >= 0 && c < 3; ++c, ++compared)
@@ -177,7 +177,7 @@ TEST_CASE("effect_split_asks_at_its_own_rate") {
   // As a client that begins here.
   SplitRigOptions fresh = o;
   SplitRig other(fresh);
-  REQUIRE(set_camera(&other.device->renderer, renderer->camera).ok);
+  REQUIRE(set_camera(&other.device->renderer, renderer->view.camera).ok);
   other.frame(0);
   CHECK(pixels_of(other.client) == resting);
 }

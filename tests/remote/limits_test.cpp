@@ -315,17 +315,17 @@ TEST_CASE("limits_hold_for_frames") {
   settings.width = 16, settings.height = 12;
   std::unique_ptr<TestRenderer> test = make_renderer(built->scene, settings);
   Renderer* renderer = &test->renderer;
-  for (double good : {0.0, -kSecondsMax, kSecondsMax}) CHECK(prepare_frame(renderer, good).ok);
+  for (double good : {0.0, -kSecondsMax, kSecondsMax}) CHECK(begin_frame(renderer, {good}).ok);
   for (double bad : {kNan, kInf, -kInf, 2e9, -2e9, 1e300}) {
-    Status status = prepare_frame(renderer, bad);
+    Status status = begin_frame(renderer, {bad});
     CHECK(!status.ok);
     CHECK(std::strstr(status.message, "seconds") != nullptr);
   }
   for (double bad : {kNan, kInf, -kInf, 1.1e18, -1.1e18})
     for (int place = 0; place < 9; ++place) {
-      Camera camera = renderer->camera;
+      Camera camera = renderer->view.camera;
       (place < 3 ? &camera.eye.x : place < 6 ? &camera.target.x : &camera.up.x)[place % 3] = static_cast<float>(bad);
       CHECK(!set_camera(renderer, camera).ok);
     }
-  CHECK(set_camera(renderer, renderer->camera).ok);
+  CHECK(set_camera(renderer, renderer->view.camera).ok);
 }

@@ -135,7 +135,7 @@ TEST_CASE("preparation_left_out_keeps_no_picture") {
   SplitRig rig(options);
   Renderer* renderer = &rig.device->renderer;
   const double duration = renderer->scene.animations[0].duration;
-  const Camera camera = renderer->camera;
+  const Camera camera = renderer->view.camera;
   Camera moved = camera;
   moved.eye = 1.1f * camera.eye;
   REQUIRE(set_camera(renderer, camera).ok);

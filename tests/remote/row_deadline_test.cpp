@@ -113,7 +113,7 @@ TEST_CASE("row_deadline_gives_up_a_shared_row") {
       slices.begin(0);
       REQUIRE(slices.finish());
       for (int i = 1; i < 5; ++i) {
-        Camera camera = rig.device->renderer.camera;
+        Camera camera = rig.device->renderer.view.camera;
         camera.eye = camera.eye * 0.9f + camera.target * 0.1f;
         REQUIRE(set_camera(&rig.device->renderer, camera).ok);
         slices.begin(0);

@@ -84,8 +84,8 @@ TEST_CASE("client_start_is_bounded_by_the_first_rows") {
   CHECK(server->round_trip_ns < kTooLongNs / 2);
 }
 
-// Goal: of two servers that start alike, the one whose answers once came sooner does not get more rows for it, where the
-// link keeps up. Method: a start set far too low.
+// Goal: of two servers that start alike, the one whose answers once came sooner does not get more rows for it, where
+// the link keeps up. Method: a start set far too low.
 TEST_CASE("client_start_is_bounded_by_the_last_rows") {
   SplitRigOptions options = tablet();
   options.server_count = 2;
@@ -134,7 +134,7 @@ TEST_CASE("slow_link_is_not_what_servers_do_one_after_another") {
     options.client.check_count = 0;
     options.compares = false;
     SplitRig rig(options);
-    const Camera home = rig.device->renderer.camera;
+    const Camera home = rig.device->renderer.view.camera;
     for (int frame = 0; frame < 40; ++frame) {
       Camera camera = home;
       camera.eye = home.eye + 0.01f * static_cast<float>(frame % 10) * cross(home.target - home.eye, home.up);
@@ -166,7 +166,7 @@ TEST_CASE("slow_link_is_rarely_assumed_to_be_faster") {
   std::uint32_t trials = 0, limited = 0;
   double fastest = 1e9;
   for (std::uint32_t frame = 0; frame < 160; ++frame) {
-    Camera camera = renderer->camera;
+    Camera camera = renderer->view.camera;
     camera.eye = camera.eye + 0.005f * cross(camera.target - camera.eye, camera.up);
     REQUIRE(set_camera(renderer, camera).ok);
     rig.frame(0);

@@ -51,14 +51,16 @@ void SplitRig::stop_server(std::uint32_t i) { pocketray::stop_server(&world, i);
 
 std::vector<std::uint8_t> SplitRig::local_pixels(double seconds) {
   Renderer& renderer = whole->renderer;
-  renderer.camera = device->renderer.camera, renderer.camera_overridden = device->renderer.camera_overridden;
-  renderer.camera_index = device->renderer.camera_index, renderer.exposure = device->renderer.exposure;
+  renderer.view.camera = device->renderer.view.camera,
+  renderer.view.camera_overridden = device->renderer.view.camera_overridden;
+  renderer.view.camera_index = device->renderer.view.camera_index,
+  renderer.view.exposure = device->renderer.view.exposure;
   REQUIRE(render_frame(&renderer, seconds).ok);
   std::vector<std::uint8_t> pixels(client.pixels.count);
   int width = static_cast<int>(options.width), height = static_cast<int>(options.height);
   bool small = options.client.format == WireFormat::rgb565;
-  pack_rows(renderer.image.data, width, height, 0, height, renderer.exposure, small ? kRgb565 : kRgb888, Rotation::none,
-            options.client.dither, pixels.data(), width * (small ? 2 : 3));
+  pack_rows(renderer.image.data, width, height, 0, height, renderer.view.exposure, small ? kRgb565 : kRgb888,
+            Rotation::none, options.client.dither, pixels.data(), width * (small ? 2 : 3));
   return pixels;
 }
 

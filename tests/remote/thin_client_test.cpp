@@ -55,7 +55,7 @@ TEST_CASE("thin_client_frames_equal_local_ones") {
         CAPTURE(server_count);
         for (int i = 0; i < 4; ++i) {
           if (i == 3) {
-            Camera camera = rig.device->renderer.camera;
+            Camera camera = rig.device->renderer.view.camera;
             camera.eye = camera.eye * 0.9f + camera.target * 0.1f;
             REQUIRE(set_camera(&rig.device->renderer, camera).ok);
           }

@@ -364,7 +364,7 @@ TEST_CASE("verify_as_the_commands_start_it") {
   std::vector<unsigned char> memory(kRenderServers.need(*servers, r.settings) + kArenaAlignment);
   std::uint64_t state = 0;
   for (int i = 0; i < 2; ++i) {
-    r.frame_arena = make_arena("frame", memory.data(), memory.size());
+    r.memory.frame = make_arena("frame", memory.data(), memory.size());
     REQUIRE(kRenderServers.start(servers, &r, false, false).ok);
     const Client& c = connected(servers)->client;
     CHECK((c.options.entropy == platform::random_bytes));

@@ -23,13 +23,13 @@ struct Colored {
     settings.width = width, settings.height = height, settings.threads = 1;
     test = make_renderer(scene->scene, settings);
     Renderer& renderer = test->renderer;
-    renderer.exposure = 3;
+    renderer.view.exposure = 3;
     REQUIRE(render_frame(&renderer, 0, aov).ok);
     values.assign(renderer.image.begin(), renderer.image.end());
     if (box.width == 0) box = {0, 0, static_cast<int>(width), static_cast<int>(height)};
     picture = color_aov(aov, box, &renderer);
     colors.assign(renderer.image.begin(), renderer.image.end());
-    CHECK(renderer.exposure == 1);
+    CHECK(renderer.view.exposure == 1);
   }
 };
 

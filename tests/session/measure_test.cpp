@@ -38,11 +38,11 @@ TEST_CASE("measure_counts_frames_traced_whole") {
   CHECK(m.whole_because == nullptr);
   CHECK(m.pixels_traced < 4 * 32 * 24 / 2);
   renderer = make_seesaw(CoherenceMode::automatic);
-  renderer->renderer.coherence_state.trial.rest = 3;
+  renderer->renderer.history.state.trial.rest = 3;
   m = measure(&renderer->renderer, 2);
   CHECK(m.whole_frames == 2);
   CHECK(std::strstr(m.whole_because, "did not pay") != nullptr);
-  renderer->renderer.coherence_state.trial.rest = 3;
+  renderer->renderer.history.state.trial.rest = 3;
   m = measure(&renderer->renderer, 3);
   CHECK(m.whole_frames == 3);
   CHECK(std::strstr(m.whole_because, "retrying") != nullptr);

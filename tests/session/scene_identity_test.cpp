@@ -77,9 +77,9 @@ TEST_CASE("scene_identity_is_of_the_content_alone") {
 TEST_CASE("scene_identity_gives_its_memory_back_or_says_what_it_needs") {
   Loaded loaded("statue");
   REQUIRE(loaded.status.ok);
-  std::size_t used = loaded.renderer.scene_arena.used;
+  std::size_t used = loaded.renderer.memory.scene.used;
   loaded.identity();
-  CHECK(loaded.renderer.scene_arena.used == used);
+  CHECK(loaded.renderer.memory.scene.used == used);
   Loaded tight("statue", 0, used + used / 2);
   REQUIRE(tight.status.ok);
   ContentHash hash;

@@ -165,7 +165,8 @@ TEST_CASE("cut_off_is_bounded_in_nested_glass") {
         for (int axis = 0; axis < 3; ++axis) {
           const double left = double(a.image[i][axis]), right = double(b.image[i][axis]);
           CHECK(std::fabs(left - right) <= double(counts.left_out_max) + 1e-5 * right);
-          const int levels = srgb_level(a.image[i][axis] * a.exposure) - srgb_level(b.image[i][axis] * b.exposure);
+          const int levels =
+              srgb_level(a.image[i][axis] * a.view.exposure) - srgb_level(b.image[i][axis] * b.view.exposure);
           CHECK(std::abs(levels) <= 1);
         }
     }

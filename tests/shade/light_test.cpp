@@ -241,7 +241,7 @@ TEST_CASE("hard_23_terminator_of_a_coarse_smooth_sphere") {
       Vec3 direction = pole * float(std::cos(angle)) + out * float(std::sin(angle));
       Vec3 eye = direction * 3.0f;
       Hit hit;
-      t->renderer.accel_info->closest(t->renderer.accel, {eye, -direction, 9}, nullptr, &hit, nullptr);
+      t->renderer.accel.info->closest(t->renderer.accel.built, {eye, -direction, 9}, nullptr, &hit, nullptr);
       Surface surface;
       t->renderer.frame.surface(t->renderer.frame, {eye, -direction, 9}, hit, &surface);
       float facing = dot(surface.normal, pole);

@@ -56,7 +56,7 @@ int rays_that_escape(const Room& room, Rng* rng, int ray_count) {
       ray = {from, normalize(to - from), __builtin_inff()};
     }
     Hit hit;
-    renderer.accel_info->closest(renderer.accel, ray, nullptr, &hit, nullptr);
+    renderer.accel.info->closest(renderer.accel.built, ray, nullptr, &hit, nullptr);
     if (hit.triangle == kNoTriangle) {
       ++escaped;
       i += kPath - 1 - i % kPath;

@@ -52,7 +52,7 @@ struct Traced {
 Traced trace(const Scene& scene, const Settings& settings, bool selects) {
   auto test = make_renderer(scene, settings);
   REQUIRE(has(test->renderer.effects.mask, Effect::source_selection) == selects);
-  CHECK(test->renderer.light_nodes.empty() == !selects);
+  CHECK(test->renderer.lights.nodes.empty() == !selects);
   REQUIRE(render_frame(&test->renderer, 0).ok);
   return {Picture(test->renderer.image.begin(), test->renderer.image.end()),
           total_counts(test->renderer).rays[static_cast<int>(RayKind::shadow)]};
@@ -156,7 +156,7 @@ TEST_CASE("source_selection_serves_the_exposure") {
   auto test = make_renderer(s->scene, settings_of(kDirect, 0.1f));
   REQUIRE(has(test->renderer.effects.mask, Effect::source_selection));
   REQUIRE(render_frame(&test->renderer, 0).ok);
-  CHECK(measure_exposure(&test->renderer) == test->renderer.exposure);
+  CHECK(measure_exposure(&test->renderer) == test->renderer.view.exposure);
 }
 
 // Goal: a scene scaled by a power of two gives the same picture. Method: bit for bit.

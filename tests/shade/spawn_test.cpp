@@ -54,7 +54,7 @@ int body_hits(GeneratedScene* s, const Vec3& center, int spawns) {
   const Renderer& renderer = t->renderer;
   Rng rng = make_rng(12);
   int wrong = 0;
-  float size = max_component(extent(renderer.accel.bounds));
+  float size = max_component(extent(renderer.accel.built.bounds));
   for (int i = 0; i < spawns; ++i) {
     const Triangle& triangle = renderer.scene.triangles[next_u32(&rng) % renderer.scene.triangles.count];
     Vec3 a = renderer.scene.positions[triangle.vertex(0)], b = renderer.scene.positions[triangle.vertex(1)];
@@ -63,7 +63,7 @@ int body_hits(GeneratedScene* s, const Vec3& center, int spawns) {
     Vec3 origin = center + normalize(random_vec3(&rng)) * (2 * size);
     Ray ray = {origin, target - origin, __builtin_inff()};
     Hit hit, again;
-    renderer.accel_info->closest(renderer.accel, ray, nullptr, &hit, nullptr);
+    renderer.accel.info->closest(renderer.accel.built, ray, nullptr, &hit, nullptr);
     if (hit.triangle == kNoTriangle) continue;
     Surface surface;
     renderer.frame.surface(renderer.frame, ray, hit, &surface);
@@ -71,8 +71,8 @@ int body_hits(GeneratedScene* s, const Vec3& center, int spawns) {
     if (!surface.front) continue;  // at a vertex of the outline a hit on the back is equally valid
     if (dot(outgoing, surface.geometric) < 0) outgoing = -outgoing;
     if (!(dot(outgoing, surface.geometric) > 1e-6f)) continue;
-    renderer.accel_info->closest(renderer.accel, {safe_origin(surface, 1), outgoing, __builtin_inff()}, nullptr, &again,
-                                 nullptr);
+    renderer.accel.info->closest(renderer.accel.built, {safe_origin(surface, 1), outgoing, __builtin_inff()}, nullptr,
+                                 &again, nullptr);
     wrong += again.triangle != kNoTriangle;
   }
   return wrong;

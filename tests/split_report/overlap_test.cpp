@@ -42,7 +42,7 @@ void make_pair(const SceneStore& store, const char* scene, const PixelTimes& tim
   settings.width = kWidth, settings.height = kHeight, settings.coherence = CoherenceMode::off;
   p->device = make_renderer(stored->scene, settings);
   Renderer* renderer = &p->device->renderer;
-  p->camera = make_camera_control(renderer->camera, renderer->accel.bounds);
+  p->camera = make_camera_control(renderer->view.camera, renderer->accel.built.bounds);
   platform::NullLinkSettings line;
   line.bytes_per_second = static_cast<std::uint64_t>(1e9 / ns_per_byte), line.clock_step_ns = 50;
   REQUIRE(open_world(line, store, 1, &p->world).ok);

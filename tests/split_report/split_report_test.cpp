@@ -234,7 +234,7 @@ TEST_CASE("split_report_paper_traces_frames_whole") {
     const Status status = measure_paper(r.setup, &progress, &figures);
     REQUIRE_MESSAGE(status.ok, status.message);
     CHECK(r.device->renderer.settings.coherence == mode);
-    CHECK(r.device->renderer.coherence_state.planned == (mode == CoherenceMode::on));
+    CHECK(r.device->renderer.history.state.planned == (mode == CoherenceMode::on));
     rows[mode == CoherenceMode::on] = figures.paper;
   }
   REQUIRE(rows[0].size() == 6);

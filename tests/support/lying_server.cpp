@@ -32,7 +32,7 @@ void lie_about(Liar* liar, Session* s, const Slice& slice) {
       for (std::uint32_t column = job.traced_columns; column < column_end; ++column) {
         if (!liar->lie(job.request.frame, row, column)) continue;
         Vec3* pixel = &renderer->image[std::size_t(row) * width + column];
-        *pixel = wrong(*pixel, renderer->exposure);
+        *pixel = wrong(*pixel, renderer->view.exposure);
         ++told;
       }
 }

@@ -249,17 +249,17 @@ std::vector<std::uint8_t> rendered_here(const FrameRequest& request, const Scene
   Renderer renderer, *r = &renderer;
   start_renderer(block.data(), block.size(), request.settings, r);
   r->scene = scene;
-  r->camera_index = request.camera_index;
-  r->animation = request.animation;
+  r->view.camera_index = request.camera_index;
+  r->view.animation = request.animation;
   REQUIRE(plan_renderer(r, SceneStorage(), 0).ok);
   REQUIRE(build_renderer(r).ok);
   if (request.camera_stated) REQUIRE(set_camera(r, request.camera).ok);
-  if (request.exposure > 0) r->exposure = request.exposure;
+  if (request.exposure > 0) r->view.exposure = request.exposure;
   REQUIRE(render_frame(r, request.seconds).ok);
   int width = static_cast<int>(request.settings.width), height = static_cast<int>(request.settings.height);
   int line_bytes = width * static_cast<int>(pixel_bytes(request.format));
   std::vector<std::uint8_t> pixels(static_cast<std::size_t>(line_bytes) * request.settings.height);
-  pack_rows(r->image.data, width, height, 0, height, r->exposure,
+  pack_rows(r->image.data, width, height, 0, height, r->view.exposure,
             request.format == WireFormat::rgb565 ? kRgb565 : kRgb888, Rotation::none, request.dither, pixels.data(),
             line_bytes);
   return pixels;

@@ -15,9 +15,9 @@ std::unique_ptr<TestRenderer> make_renderer(const Scene& scene, const Settings& 
   test->block.reset(new std::uint8_t[bytes]);
   Renderer* renderer = &test->renderer;
   start_renderer(test->block.get(), bytes, settings, renderer);
-  if (accel) renderer->accel_info = accel;
+  if (accel) renderer->accel.info = accel;
   renderer->scene = scene;
-  renderer->recolorable = recolorable;
+  renderer->materials.recolorable = recolorable;
   Status result = plan_renderer(renderer, SceneStorage(), 0);
   if (result.ok) {
     renderer->workers = start_workers(settings.threads);

@@ -38,7 +38,7 @@ Pair make_pair(const char* scene, Settings settings) {
 
 bool same_frames(const Pair& pair, double seconds) {
   REQUIRE(render_frame(&pair.whole->renderer, seconds).ok);
-  REQUIRE(render_coherent(&pair.coherent->renderer, seconds).ok);
+  REQUIRE(render_frame(&pair.coherent->renderer, changes_at(seconds)).ok);
   const Array<Vec3>&a = pair.whole->renderer.image, &b = pair.coherent->renderer.image;
   return std::memcmp(a.data, b.data, a.bytes()) == 0;
 }
@@ -92,14 +92,14 @@ TEST_CASE("seesaw_frames_equal_whole_ones") {
   std::uint64_t traced = 0, pixels = 0;
   for (int begin : {0, 60, 300}) {
     for (TestRenderer* each : {pair.whole.get(), pair.coherent.get()}) {
-      Camera camera = each->renderer.camera;
+      Camera camera = each->renderer.view.camera;
       camera.eye.x += 0.01f * static_cast<float>(begin);
       REQUIRE(set_camera(&each->renderer, camera).ok);
     }
     for (int frame = begin; frame < begin + effort(12); ++frame) {
       CAPTURE(frame);
       REQUIRE(same_frames(pair, frame / 30.0));
-      const CoherenceState& state = pair.coherent->renderer.coherence_state;
+      const CoherenceState& state = pair.coherent->renderer.history.state;
       if (frame > begin) traced += state.pixels_traced, pixels += settings.width * settings.height;
     }
   }
@@ -120,13 +120,13 @@ TEST_CASE("virtual_lights_that_rest_are_followed") {
     CAPTURE(frame);
     REQUIRE(same_frames(pair, frame / 30.0));
     if (frame == 20) continue;
-    REQUIRE(coherent.coherence_state.whole_because == nullptr);
-    traced += coherent.coherence_state.pixels_traced, pixels += settings.width * settings.height;
+    REQUIRE(coherent.history.state.whole_because == nullptr);
+    traced += coherent.history.state.pixels_traced, pixels += settings.width * settings.height;
   }
   CHECK(traced > 0);
   CHECK(traced * 4 <= pixels);
   REQUIRE(same_frames(pair, 29 / 30.0));
-  CHECK(std::string(coherent.coherence_state.whole_because) == "a virtual light changed");
+  CHECK(std::string(coherent.history.state.whole_because) == "a virtual light changed");
   REQUIRE(same_frames(pair, 28 / 30.0));  // back to where they were before the last frame
 }
 
@@ -154,7 +154,7 @@ TEST_CASE("compensated_virtual_lights_are_followed") {
       CAPTURE(frame);
       REQUIRE(same_frames(pair, frame / 30.0));
       if (frame == 20) continue;
-      REQUIRE(pair.coherent->renderer.coherence_state.whole_because == nullptr);
+      REQUIRE(pair.coherent->renderer.history.state.whole_because == nullptr);
       whole_rays += ray_count(pair.whole->renderer), rays += ray_count(pair.coherent->renderer);
     }
     CAPTURE(static_cast<double>(rays) / static_cast<double>(whole_rays));
@@ -169,7 +169,7 @@ TEST_CASE("compensation_without_room_is_traced_whole") {
   settings.width = 40, settings.height = 30;
   settings.indirect = indirect_choice(Effect::instant_radiosity);
   Pair pair = make_pair("seesaw", settings);
-  const CoherenceState& state = pair.coherent->renderer.coherence_state;
+  const CoherenceState& state = pair.coherent->renderer.history.state;
   for (int frame = 20; frame < 22; ++frame) REQUIRE(same_frames(pair, frame / 30.0));
   REQUIRE(state.whole_because == nullptr);
   for (TestRenderer* t : {pair.coherent.get(), pair.whole.get()}) {
@@ -191,9 +191,9 @@ TEST_CASE("unchanged_frame_traces_nothing") {
     settings.width = 64, settings.height = 48;
     Pair pair = make_pair(scene, settings);
     REQUIRE(same_frames(pair, 0.5));
-    CHECK(pair.coherent->renderer.coherence_state.pixels_traced == 64 * 48);
+    CHECK(pair.coherent->renderer.history.state.pixels_traced == 64 * 48);
     REQUIRE(same_frames(pair, 0.5));
-    const CoherenceState& state = pair.coherent->renderer.coherence_state;
+    const CoherenceState& state = pair.coherent->renderer.history.state;
     CHECK(state.whole_because == nullptr);
     CHECK(state.pixels_traced == 0);
     CHECK(state.search.moving_rays + state.search.static_rays == 0);
@@ -210,11 +210,9 @@ TEST_CASE("coherent_frame_in_slices_equals_whole_one") {
   Pair pair = make_pair("seesaw", settings);
   Renderer* renderer = &pair.coherent->renderer;
   for (int frame = 0; frame < 3; ++frame) {
-    REQUIRE(prepare_frame(renderer, frame / 30.0).ok);
-    CoherentFrame slices;
-    begin_coherent(renderer, &slices);
+    REQUIRE(begin_frame(renderer, {frame / 30.0, FramePurpose::changes}).ok);
     int calls = 1;
-    while (!advance_coherent(renderer, 0, nullptr, &slices)) ++calls;
+    while (!trace_frame(renderer, frame_source(renderer, nullptr, 0))) ++calls;
     CHECK((frame > 0 || calls > 1));
     REQUIRE(render_frame(&pair.whole->renderer, frame / 30.0).ok);
     CHECK(std::memcmp(renderer->image.data, pair.whole->renderer.image.data, renderer->image.bytes()) == 0);
@@ -226,7 +224,7 @@ TEST_CASE("moving_triangles_are_found_among_all") {
   Settings settings;
   settings.width = 64, settings.height = 48;
   Pair pair = make_pair("seesaw", settings);
-  const MovingGeometry& m = pair.coherent->renderer.coherence.moving;
+  const MovingGeometry& m = pair.coherent->renderer.history.coherence.moving;
   REQUIRE(m.ids.count > 0);
   std::uint32_t next = 0, wrong = 0;
   for (std::uint32_t i = 0; i < pair.coherent->renderer.scene.triangles.count; ++i) {
@@ -244,13 +242,13 @@ TEST_CASE("coherence_without_room_is_left_out") {
   Settings settings;
   settings.width = 160, settings.height = 120;
   auto plain = make_renderer(shared_builtin("seesaw")->scene, settings);
-  settings.memory_bytes = plain->renderer.memory.total_bytes + 1024;
+  settings.memory_bytes = plain->renderer.memory.plan.total_bytes + 1024;
   settings.coherence = CoherenceMode::on;
   auto tight = make_renderer(shared_builtin("seesaw")->scene, settings);
-  CHECK(!tight->renderer.coherence_state.planned);
-  REQUIRE(render_coherent(&tight->renderer, 0).ok);
-  REQUIRE(render_coherent(&tight->renderer, 0).ok);
-  REQUIRE(tight->renderer.coherence_state.whole_because != nullptr);
-  CHECK(std::string(tight->renderer.coherence_state.whole_because) == "coherence does not fit into memory");
-  CHECK(tight->renderer.coherence_state.pixels_traced == 160 * 120);
+  CHECK(!tight->renderer.history.state.planned);
+  REQUIRE(render_frame(&tight->renderer, changes_at(0)).ok);
+  REQUIRE(render_frame(&tight->renderer, changes_at(0)).ok);
+  REQUIRE(tight->renderer.history.state.whole_because != nullptr);
+  CHECK(std::string(tight->renderer.history.state.whole_because) == "coherence does not fit into memory");
+  CHECK(tight->renderer.history.state.pixels_traced == 160 * 120);
 }

@@ -4,7 +4,7 @@
 #include <cstring>
 #include <string>
 
-#include "engine/coherent.h"
+#include "engine/frame.h"
 #include "temporal/moving_scene.h"
 
 using namespace pocketray;
@@ -26,15 +26,15 @@ Pair make_pair(std::unique_ptr<GeneratedScene> scene, Settings settings) {
 }
 
 bool same_frames(const Pair& pair) {
-  for (TestRenderer* each : {pair.whole.get(), pair.coherent.get()}) each->renderer.lit_mask = ~EffectMask(0);
+  for (TestRenderer* each : {pair.whole.get(), pair.coherent.get()}) each->renderer.lights.lit_mask = ~EffectMask(0);
   REQUIRE(render_frame(&pair.whole->renderer, 0).ok);
-  REQUIRE(render_coherent(&pair.coherent->renderer, 0).ok);
+  REQUIRE(render_frame(&pair.coherent->renderer, changes_at(0)).ok);
   const Array<Vec3>&a = pair.whole->renderer.image, &b = pair.coherent->renderer.image;
   return std::memcmp(a.data, b.data, a.bytes()) == 0;
 }
 
 std::string whole_because(const Pair& pair) {
-  const char* why = pair.coherent->renderer.coherence_state.whole_because;
+  const char* why = pair.coherent->renderer.history.state.whole_because;
   return why ? why : "";
 }
 
@@ -63,7 +63,7 @@ TEST_CASE("dependence_on_camera_settings_and_surroundings_makes_whole_frames") {
       {"no previous frame", [](Renderer*) {}},
       {"the camera moved",
        [](Renderer* renderer) {
-         Camera camera = renderer->camera;
+         Camera camera = renderer->view.camera;
          camera.eye.x += 0.1f;
          REQUIRE(set_camera(renderer, camera).ok);
        }},
@@ -73,7 +73,7 @@ TEST_CASE("dependence_on_camera_settings_and_surroundings_makes_whole_frames") {
          settings.ray_depth = 2;
          REQUIRE(change_settings(renderer, settings).ok);
        }},
-      {"the exposure changed", [](Renderer* renderer) { renderer->exposure = 4; }},
+      {"the exposure changed", [](Renderer* renderer) { renderer->view.exposure = 4; }},
       {"the surroundings changed",
        [](Renderer* renderer) {
          renderer->scene.info.background = {0.4f, 0.3f, 0.2f};
@@ -203,7 +203,7 @@ TEST_CASE("dependence_on_shadows_in_a_mirror") {
   for (int frame = 0; frame < 24; ++frame) {
     CHECK(same_frames(pair));
     if (frame > 0) CHECK(whole_because(pair) == "");
-    if (frame > 0) traced += pair.coherent->renderer.coherence_state.pixels_traced;
+    if (frame > 0) traced += pair.coherent->renderer.history.state.pixels_traced;
     move_by(pair.scene.get(), {0.05f, -0.25f, 0});
   }
   CHECK(traced > 0);

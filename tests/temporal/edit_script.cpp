@@ -60,7 +60,7 @@ void edit_surroundings(EditScript* s) {
   const float x = next_in(&s->rng, 0, 1);
   for (Renderer* renderer : {&s->whole->renderer, &s->coherent->renderer}) {
     Settings settings = renderer->settings;
-    Camera camera = renderer->camera;
+    Camera camera = renderer->view.camera;
     switch (kind) {
       case 0:
         renderer->scene.info.background = color;
@@ -69,7 +69,7 @@ void edit_surroundings(EditScript* s) {
         renderer->scene.info.ambient = color;
         break;
       case 2:
-        renderer->exposure = 0.5f + x;
+        renderer->view.exposure = 0.5f + x;
         break;
       case 3:
         settings.ray_depth = static_cast<std::uint32_t>(x * 5);
@@ -97,7 +97,7 @@ void edit_surroundings(EditScript* s) {
 void edit_material(EditScript* s) {
   const std::vector<Material>& opened = s->generated->materials;
   const std::uint32_t index = next_u32(&s->rng) % static_cast<std::uint32_t>(opened.size());
-  const Material m = recolored(opened[index], s->whole->renderer.materials[index],
+  const Material m = recolored(opened[index], s->whole->renderer.materials.current[index],
                                static_cast<std::uint32_t>(s->generated->textures.size()), &s->rng);
   if (!check_recolored(&s->whole->renderer, index, m).ok) return;
   for (Renderer* renderer : {&s->whole->renderer, &s->coherent->renderer}) (void)change_material(renderer, index, m);
@@ -116,8 +116,8 @@ void edit(EditScript* s) {
 bool is_stopped(Renderer* renderer, double seconds) {
   std::atomic<bool> stop{true};
   bool complete = true;
-  return render_coherent(renderer, seconds, &stop, &complete).ok &&
-         (!complete || renderer->coherence_state.pixels_traced == 0);
+  return render_frame(renderer, changes_at(seconds, &stop), &complete).ok &&
+         (!complete || renderer->history.state.pixels_traced == 0);
 }
 
 // Lets a random run of the vertices move, or all of them: bodies, lamps, panes, cut-out and one-sided surfaces.
@@ -236,19 +236,19 @@ EditScript begin_script(std::uint32_t features, std::uint64_t seed) {
 bool follow_script(EditScript* s) {
   Renderer *whole = &s->whole->renderer, *coherent = &s->coherent->renderer;
   edit(s);
-  whole->lit_mask = coherent->lit_mask = ~EffectMask(0);
+  whole->lights.lit_mask = coherent->lights.lit_mask = ~EffectMask(0);
   const std::uint32_t disturbance = next_u32(&s->rng) % 40;
   if (disturbance == 0 && !is_stopped(coherent, s->seconds + 0.3)) return false;
   if (disturbance == 1 && !render_frame(coherent, s->seconds + 0.5).ok) return false;
-  if (disturbance == 2 && !prepare_frame(coherent, s->seconds + 0.7).ok) return false;
+  if (disturbance == 2 && !begin_frame(coherent, {s->seconds + 0.7}).ok) return false;
   if (s->shares && next_u32(&s->rng) % 8 != 0)
     return render_frame(whole, s->seconds).ok && follow_shared(coherent, *whole, s->seconds, &s->rng, &s->shared);
-  if (!render_frame(whole, s->seconds).ok || !render_coherent(coherent, s->seconds).ok) return false;
-  if (!coherent->coherence_state.whole_because) {
+  if (!render_frame(whole, s->seconds).ok || !render_frame(coherent, changes_at(s->seconds)).ok) return false;
+  if (!coherent->history.state.whole_because) {
     ++s->partial_frames;
-    if (coherent->effects.mask & bit(Effect::instant_radiosity) && !is_unchanged(coherent->coherence))
+    if (coherent->effects.mask & bit(Effect::instant_radiosity) && !is_unchanged(coherent->history.coherence))
       ++s->partly_relit_frames;
-    s->pixels_traced += coherent->coherence_state.pixels_traced;
+    s->pixels_traced += coherent->history.state.pixels_traced;
   }
   return std::memcmp(whole->image.data, coherent->image.data, whole->image.bytes()) == 0;
 }

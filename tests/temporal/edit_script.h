@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "base/rng.h"
-#include "engine/coherent.h"
+#include "engine/frame.h"
 #include "support/generated_scene.h"
 #include "support/test_environment.h"
 #include "temporal/shared_script.h"

@@ -4,7 +4,7 @@
 #include <cstring>
 
 #include "effect/setting_list.h"
-#include "engine/coherent.h"
+#include "engine/frame.h"
 #include "temporal/moving_scene.h"
 
 using namespace pocketray;
@@ -48,13 +48,13 @@ TEST_CASE("shadows_of_virtual_lights_in_mirrors_are_followed") {
   std::unique_ptr<TestRenderer> whole = make_renderer(scene.scene, settings);
   settings.coherence = CoherenceMode::on;
   std::unique_ptr<TestRenderer> coherent = make_renderer(scene.scene, settings);
-  const CoherenceState& state = coherent->renderer.coherence_state;
+  const CoherenceState& state = coherent->renderer.history.state;
   std::vector<Vec3> last;
   std::uint32_t moved = 0;
   for (int frame = 0; frame < 6; ++frame) {
     CAPTURE(frame);
     REQUIRE(render_frame(&whole->renderer, 0.5).ok);
-    REQUIRE(render_coherent(&coherent->renderer, 0.5).ok);
+    REQUIRE(render_frame(&coherent->renderer, changes_at(0.5)).ok);
     const Array<Vec3>&a = whole->renderer.image, &b = coherent->renderer.image;
     CHECK(std::memcmp(a.data, b.data, a.bytes()) == 0);
     if (frame > 0) {

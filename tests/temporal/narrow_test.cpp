@@ -6,7 +6,7 @@
 #include <cstring>
 
 #include "base/rng.h"
-#include "engine/coherent.h"
+#include "engine/frame.h"
 #include "support/effort.h"
 #include "temporal/moving_scene.h"
 
@@ -35,11 +35,11 @@ int wrong_frames(GeneratedScene* s, std::uint32_t side, int frames, Move move) {
     const Vec3 by = move(frame);
     for (std::size_t i = 0; i < rest.size(); ++i) s->rest_positions[i] = rest[i] + by;
     REQUIRE(render_frame(&whole->renderer, 0).ok);
-    REQUIRE(render_coherent(&coherent->renderer, 0).ok);
+    REQUIRE(render_frame(&coherent->renderer, changes_at(0)).ok);
     const Array<Vec3>&a = whole->renderer.image, &b = coherent->renderer.image;
     const bool same = std::memcmp(a.data, b.data, a.bytes()) == 0;
-    if (!same) forget_frame(&coherent->renderer.coherence);
-    wrong += !same, partial += !coherent->renderer.coherence_state.whole_because;
+    if (!same) forget_last_frame(&coherent->renderer.history);
+    wrong += !same, partial += !coherent->renderer.history.state.whole_because;
   }
   CHECK(partial >= frames / 2);
   return wrong;

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "effect/setting_list.h"
-#include "engine/coherent.h"
+#include "engine/frame.h"
 #include "engine/recolor.h"
 #include "support/test_environment.h"
 #include "temporal/moving_scene.h"
@@ -47,7 +47,7 @@ std::uint32_t pixel_count(const Pair& pair) { return pair.whole->renderer.image.
 
 bool same_frames(const Pair& pair) {
   REQUIRE(render_frame(&pair.whole->renderer, 0).ok);
-  REQUIRE(render_coherent(&pair.coherent->renderer, 0).ok);
+  REQUIRE(render_frame(&pair.coherent->renderer, changes_at(0)).ok);
   const Array<Vec3>&a = pair.whole->renderer.image, &b = pair.coherent->renderer.image;
   return std::memcmp(a.data, b.data, a.bytes()) == 0;
 }
@@ -56,11 +56,11 @@ bool same_frames(const Pair& pair) {
 void start(const Pair& pair) {
   REQUIRE(same_frames(pair));
   REQUIRE(same_frames(pair));
-  REQUIRE(pair.coherent->renderer.coherence_state.pixels_traced == 0);
+  REQUIRE(pair.coherent->renderer.history.state.pixels_traced == 0);
 }
 
 std::string whole_because(const Pair& pair) {
-  const char* why = pair.coherent->renderer.coherence_state.whole_because;
+  const char* why = pair.coherent->renderer.history.state.whole_because;
   return why ? why : "";
 }
 
@@ -71,7 +71,7 @@ std::uint64_t recolored_to(const Pair& pair, std::uint32_t material, const Mater
     REQUIRE(change_material(&each->renderer, material, m).ok);
   }
   CHECK(same_frames(pair));
-  return pair.coherent->renderer.coherence_state.pixels_traced;
+  return pair.coherent->renderer.history.state.pixels_traced;
 }
 
 // Pixels of which a first hit shows the material.
@@ -82,7 +82,7 @@ std::uint64_t count_shown(const Pair& pair, std::uint32_t material) {
   for (std::uint32_t i = 0; i < pixels; ++i) {
     bool shows = false;
     for (std::uint32_t sample = 0; sample < r.settings.samples_per_pixel; ++sample) {
-      const Hit& hit = r.coherence.first_hits[sample * pixels + i];
+      const Hit& hit = r.history.coherence.first_hits[sample * pixels + i];
       shows |= hit.triangle != kNoTriangle && r.scene.triangles[hit.triangle].material() == material;
     }
     count += shows;
@@ -380,7 +380,7 @@ TEST_CASE("recoloring_a_lamp_dims_it") {
     for (float share : {0.5f, 0.0f, 0.0f, 0.25f, 1.0f}) {
       CAPTURE(share);
       Material m = pair.scene->materials[2];
-      const bool changes = pair.coherent->renderer.materials[2].emission != m.emission * share;
+      const bool changes = pair.coherent->renderer.materials.current[2].emission != m.emission * share;
       m.emission = m.emission * share;
       const std::uint64_t traced = recolored_to(pair, 2, m);
       CHECK(whole_because(pair) == "");
@@ -421,7 +421,7 @@ TEST_CASE("recoloring_that_reaches_far_makes_whole_frames") {
   CHECK(recolored_to(pair, 1, pane_changed(Pane::holes, pair.scene->materials[1])) == pixel_count(pair));
   CHECK(whole_because(pair) == "a recoloured surface moved");
   for (Vec3& p : pair.scene->rest_positions) p.x += 0.3f;
-  Material m = pair.coherent->renderer.materials[1];
+  Material m = pair.coherent->renderer.materials.current[1];
   m.diffuse = {0.1f, 0.2f, 0.3f};
   CHECK(recolored_to(pair, 1, m) < pixel_count(pair));
 }

@@ -39,11 +39,11 @@ TEST_CASE("recolored_frames_equal_those_of_a_scene_opened_so") {
     REQUIRE(render_frame(&changed->renderer, 0).ok);
     for (int k = 0; k < 6; ++k) {
       const std::uint32_t index = next_u32(&rng) % static_cast<std::uint32_t>(scene->materials.size());
-      const Material m = recolored(scene->materials[index], changed->renderer.materials[index],
+      const Material m = recolored(scene->materials[index], changed->renderer.materials.current[index],
                                    static_cast<std::uint32_t>(scene->textures.size()), &rng);
       if (!check_recolored(&changed->renderer, index, m).ok) continue;
       changes += change_material(&changed->renderer, index, m).ok;
-      opened->materials[index] = changed->renderer.materials[index];
+      opened->materials[index] = changed->renderer.materials.current[index];
     }
     REQUIRE(render_frame(&changed->renderer, 0).ok);
     opened->bind();
@@ -52,7 +52,7 @@ TEST_CASE("recolored_frames_equal_those_of_a_scene_opened_so") {
     if (VirtualLights* lights = virtual_lights_of(fresh->renderer.frame.indirect)) {  // as many walks as when it opened
       const VirtualLights& as_opened = *virtual_lights_of(changed->renderer.frame.indirect);
       lights->lights_per_walk = as_opened.lights_per_walk, lights->area = as_opened.area;
-      fresh->renderer.lit_mask = ~fresh->renderer.effects.mask, fresh->renderer.frame.cone = {0, 0};
+      fresh->renderer.lights.lit_mask = ~fresh->renderer.effects.mask, fresh->renderer.frame.cone = {0, 0};
     }
     REQUIRE(render_frame(&fresh->renderer, 0).ok);
     const Array<Vec3>&a = changed->renderer.image, &b = fresh->renderer.image;

@@ -18,7 +18,6 @@ void trace(Renderer* renderer, const SharedSpans& spans) {
                          next->spans = s.spans, next->span_count = s.count;
                        },
                        [](void*, const SpanBatch&) { return true; }};
-  source.is_coherent = true;
   trace_frame(renderer, source);
 }
 
@@ -46,8 +45,6 @@ std::uint32_t trace_some(Renderer* renderer, std::uint32_t row, std::uint32_t en
 
 bool follow_shared(Renderer* renderer, const Renderer& whole, double seconds, Rng* rng, SharedScript* script) {
   const std::uint32_t width = renderer->settings.width, height = renderer->settings.height;
-  if (next_u32(rng) % 16 != 0) end_shared_rows(renderer);
-  if (!prepare_frame(renderer, seconds).ok) return false;
   const std::uint32_t move = next_u32(rng) % 8;
   if (move == 0) script->boundary = next_u32(rng) % height, script->below = next_u32(rng) % 2 != 0;
   if (move == 1) script->boundary = std::min(height - 1, script->boundary + next_u32(rng) % 5);
@@ -55,7 +52,9 @@ bool follow_shared(Renderer* renderer, const Renderer& whole, double seconds, Rn
   std::uint32_t begin = script->below ? script->boundary : 0, end = script->below ? height : script->boundary + 1;
   // A device asks for nothing in advance: it may trace any row.
   const bool any = next_u32(rng) % 2 == 0;
-  begin_shared_rows(renderer, any ? 0 : begin, any ? height : end);
+  FrameTask task = {seconds, FramePurpose::shared_rows};
+  if (!any) task.rows = {begin, end};
+  if (!begin_frame(renderer, task).ok) return false;
   while (!search_shared_rows(renderer, next_u32(rng) % 3 == 0 ? 1 : 600))
     if (next_u32(rng) % 64 == 0) return true;  // given up
   if (next_u32(rng) % 8 == 0) end = begin + 1 + next_u32(rng) % (end - begin);

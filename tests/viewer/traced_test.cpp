@@ -12,7 +12,7 @@ using namespace pocketray;
 namespace {
 
 bool is_kept(const Renderer& renderer, int column, int row) {
-  const Coherence& c = renderer.coherence;
+  const Coherence& c = renderer.history.coherence;
   std::size_t tile = static_cast<std::size_t>(row / 8) * c.tile_columns + static_cast<std::size_t>(column / 8);
   return !(c.changed[tile] >> (8 * (row % 8) + column % 8) & 1);
 }
@@ -22,8 +22,8 @@ std::vector<std::uint8_t> expected_screen(const Stage& stage, const Renderer& re
   const Viewer& v = stage.viewer;
   const int bytes = v.format.bits_per_pixel / 8, line_bytes = stage.screen_width() * bytes;
   std::vector<std::uint8_t> page(static_cast<std::size_t>(line_bytes * stage.screen_height()));
-  pack_rows(renderer.image.data, v.width, v.height, 0, v.height, renderer.exposure, v.format, v.rotation, stage.dither,
-            page.data(), line_bytes);
+  pack_rows(renderer.image.data, v.width, v.height, 0, v.height, renderer.view.exposure, v.format, v.rotation,
+            stage.dither, page.data(), line_bytes);
   for (int row = 0; dims && row < v.height; ++row) {
     for (int column = 0; column < v.width; ++column) {
       if (!is_kept(renderer, column, row)) continue;
@@ -72,8 +72,8 @@ TEST_CASE("viewer_dims_exactly_the_kept_pixels") {
     stage.open("seesaw");
     OpenScene opened;
     stage.show("seesaw", &opened, "on");
-    REQUIRE(opened.renderer.coherence_state.planned);
-    REQUIRE(opened.renderer.coherence_state.whole_because == nullptr);
+    REQUIRE(opened.renderer.history.state.planned);
+    REQUIRE(opened.renderer.history.state.whole_because == nullptr);
     int kept = 0;
     for (int y = 0; y < Stage::kHeight; ++y)
       for (int x = 0; x < Stage::kWidth; ++x) kept += is_kept(opened.renderer, x, y);
@@ -95,7 +95,7 @@ TEST_CASE("viewer_dims_nothing_of_a_whole_frame") {
   stage.open("seesaw");
   OpenScene opened;
   stage.show("seesaw", &opened, "on");
-  CHECK(opened.renderer.coherence_state.whole_because != nullptr);
+  CHECK(opened.renderer.history.state.whole_because != nullptr);
   CHECK(stage.viewer.traced_shown);
   CHECK(shown_screen(stage) == expected_screen(stage, opened.renderer, false));
 }
@@ -148,13 +148,13 @@ TEST_CASE("viewer_shows_what_coherence_saves") {
     Stage::load("seesaw", coherent ? "on" : "off", &opened);
     Renderer* renderer = &opened.renderer;
     ViewerLoop loop;
-    loop.tile_spans = arena_array<Span>(&renderer->frame_arena, progressive_spans_max(renderer->settings));
+    loop.tile_spans = arena_array<Span>(&renderer->memory.frame, progressive_spans_max(renderer->settings));
     loop.finished = true;
     finish_picture(1, &stage.viewer, renderer, &loop);
     CHECK(hud_line(loop.hud, "coherence") == (coherent ? "coherence: whole frame: no previous frame" : ""));
     finish_picture(1.05, &stage.viewer, renderer, &loop);
     if (coherent) {
-      const CoherenceState& state = renderer->coherence_state;
+      const CoherenceState& state = renderer->history.state;
       CHECK(state.pixels_traced > 0);
       CHECK(state.pixels_traced < renderer->image.count);
       char expected[100];
@@ -162,17 +162,17 @@ TEST_CASE("viewer_shows_what_coherence_saves") {
                     100 * static_cast<double>(state.pixels_traced) / renderer->image.count,
                     static_cast<double>(state.search.moving_rays + state.search.static_rays) / 1000);
       CHECK(hud_line(loop.hud, "coherence") == expected);
-      CHECK(loop.coherent.spent_ns > 0);
+      CHECK(renderer->history.spent_ns > 0);
     }
-    CHECK(loop.prepare_ns > 0);
-    CHECK(loop.progressive.trace_ns == loop.prepare_ns + loop.coherent.spent_ns);
+    CHECK(renderer->history.prepare_ns > 0);
+    CHECK(loop.progressive.trace_ns == renderer->history.prepare_ns + renderer->history.spent_ns);
     CHECK(loop.progressive.pixels_traced == renderer->image.count);
     char frame_ms[40];
     std::snprintf(frame_ms, sizeof frame_ms, "%.1f ms/frame  ", static_cast<double>(loop.progressive.trace_ns) * 1e-6);
     CHECK(hud_line(loop.hud, frame_ms) != "");
     if (coherent) {  // a slow frame: until it is finished, the display tells of the one before
       const std::string before = hud_line(loop.hud, "coherence");
-      renderer->pace.ns_per_pixel = 1e8 / static_cast<double>(renderer->coherence_state.pixels_traced);
+      renderer->pace.ns_per_pixel = 1e8 / static_cast<double>(renderer->history.state.pixels_traced);
       loop.seconds = 1.1, loop.passed = true;
       int steps = 0;
       do {

@@ -116,7 +116,7 @@ TEST_CASE("viewer_steps_through_animations") {
     stage.open("seesaw");
     OpenScene opened;
     stage.show("seesaw", &opened);
-    CHECK(opened.renderer.animation == (presses == 1 ? kNone : 0u));
+    CHECK(opened.renderer.view.animation == (presses == 1 ? kNone : 0u));
     CHECK_MESSAGE(std::strstr(stage.viewer.note.text, presses == 1 ? "no animation plays" : "animation 0, "),
                   stage.viewer.note.text);
   }
@@ -157,8 +157,8 @@ TEST_CASE("viewer_keeps_the_camera") {
       CHECK(stage.viewer.kept.seconds > 2);
       if (other) stage.viewer.scene_path = "cube";
       CHECK_FALSE(stage.show(other ? "cube" : "seesaw", &second));
-      CHECK(second.renderer.camera_overridden == (moved && !other));
-      if (moved && !other) CHECK(is_equal(first.renderer.camera.eye, second.renderer.camera.eye));
+      CHECK(second.renderer.view.camera_overridden == (moved && !other));
+      if (moved && !other) CHECK(is_equal(first.renderer.view.camera.eye, second.renderer.view.camera.eye));
     }
   }
 }
@@ -220,12 +220,12 @@ TEST_CASE("viewer_goes_back_to_the_scenes_own_view") {
     stage.open(scene);
     OpenScene opened;
     Stage::load(scene, "off", &opened);
-    const Camera own = opened.renderer.camera;
+    const Camera own = opened.renderer.view.camera;
     bool again;
     REQUIRE(run_viewer(&stage.viewer, &opened.renderer, &again).ok);
-    CHECK(is_equal(opened.renderer.camera.eye, own.eye));
-    CHECK(is_equal(opened.renderer.camera.target, own.target));
-    CHECK(opened.renderer.camera_overridden);  // it was turned at all
+    CHECK(is_equal(opened.renderer.view.camera.eye, own.eye));
+    CHECK(is_equal(opened.renderer.view.camera.target, own.target));
+    CHECK(opened.renderer.view.camera_overridden);  // it was turned at all
   }
 }
 

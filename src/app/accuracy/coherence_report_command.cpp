@@ -42,11 +42,13 @@ Status plan_way(Way way, const ReportOptions& o, std::uint32_t table, Renderer* 
     return failure(
         "--compare traces single pixels, but with virtual lights or shadows from the environment they depend on "
         "others: add --indirect none, or --environment-shadows 0");
-  if (way == Way::frame_by_frame || renderer->coherence_state.planned) return success();
+  if (way == Way::frame_by_frame || renderer->history.state.planned) return success();
   if ((renderer->effects.mask & (way == Way::by_tables ? kNotInTables : kNotFollowed)) != 0)
-    return failure("coherence does not follow these frames: %s", renderer->coherence_state.unplanned_because);
-  const CoherencePlan plan = coherence_plan(*settings, renderer->light_point_count_max, renderer->light_polygons.count);
-  std::size_t bytes = renderer->memory.total_bytes + coherence_need(renderer->scene, renderer->effects.mask, plan) +
+    return failure("coherence does not follow these frames: %s", renderer->history.state.unplanned_because);
+  const CoherencePlan plan =
+      coherence_plan(*settings, renderer->lights.point_count_max, renderer->lights.polygons.count);
+  std::size_t bytes = renderer->memory.plan.total_bytes +
+                      coherence_need(renderer->scene, renderer->effects.mask, plan) +
                       coherence_scratch_need(renderer->scene, renderer->effects.mask);
   return failure("coherence does not fit in --memory: try --memory %zuM", (bytes >> 20) + 1);
 }

@@ -40,7 +40,7 @@ Status trace_pixels(PixelTracer* tracer, std::uint32_t frame, const PixelList& p
   Renderer* renderer = tracer->renderer;
   if (!tracer->posed || tracer->frame != frame) {
     if (tracer->posed) tracer->rays += ray_count(*renderer);
-    RETURN_IF_ERROR(prepare_frame(renderer, seconds_of(*renderer, frame)));
+    RETURN_IF_ERROR(begin_frame(renderer, {seconds_of(*renderer, frame)}));
     tracer->posed = true, tracer->frame = frame;
   }
   CHECK(renderer->frame.trace_strip == nullptr);  // pixels would depend on their neighbours
@@ -153,7 +153,7 @@ std::uint64_t image_space_step_count(const FrameRange& range) {
 
 Status run_image_space(Renderer* renderer, const FrameRange& range, Progress* progress, ImageSpaceRun* run) {
   CHECK_LE(range.first, range.last);
-  CHECK(!renderer->coherence_state.planned);
+  CHECK(!renderer->history.state.planned);
   run->width = renderer->settings.width, run->height = renderer->settings.height;
   Group whole(1), group;
   RenderCost cost;
@@ -177,7 +177,7 @@ Status run_image_space(Renderer* renderer, const FrameRange& range, Progress* pr
       CHECK_LE(traced, (std::uint64_t(count) + 1) * whole[0].size());
       add(cost, &f->cost), f->traced += traced;
       for (std::uint32_t k = 1; k <= count; ++k)
-        add_errors(whole[k], group[k], run->width, run->height, renderer->exposure, &f->errors);
+        add_errors(whole[k], group[k], run->width, run->height, renderer->view.exposure, &f->errors);
       show_progress(progress, done += count);
     }
     if (interrupted) break;

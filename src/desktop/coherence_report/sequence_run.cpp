@@ -6,7 +6,7 @@
 
 #include "base/check.h"
 #include "base/seal.h"
-#include "engine/coherent.h"
+#include "engine/frame.h"
 #include "present/pack.h"
 #include "session/interrupt.h"
 
@@ -32,12 +32,9 @@ void add(const CoherentSteps& steps, CoherentSteps* sum) {
 
 Status render_whole(Renderer* renderer, double seconds, bool ray_by_ray, RenderCost* cost, bool* complete) {
   const Stopwatch watch;
-  RETURN_IF_ERROR(prepare_frame(renderer, seconds));
+  RETURN_IF_ERROR(begin_frame(renderer, {seconds}));
   renderer->frame.ray_by_ray = ray_by_ray;
-  SpanList list = whole_frame(renderer);
-  SpanSource source = list_source(&list);
-  source.stop = &interrupted;
-  *complete = trace_frame(renderer, source);
+  *complete = trace_frame(renderer, frame_source(renderer, &interrupted));
   stop(watch, cost);
   cost->rays = ray_count(*renderer);
   return success();
@@ -45,8 +42,8 @@ Status render_whole(Renderer* renderer, double seconds, bool ray_by_ray, RenderC
 
 Status render_changes(Renderer* renderer, double seconds, FrameFigures* figures, bool* complete) {
   const Stopwatch watch;
-  RETURN_IF_ERROR(render_coherent(renderer, seconds, &interrupted, complete));
-  const CoherenceState& state = renderer->coherence_state;
+  RETURN_IF_ERROR(render_frame(renderer, changes_at(seconds, &interrupted), complete));
+  const CoherenceState& state = renderer->history.state;
   stop(watch, &figures->coherent);
   figures->coherent.rays = ray_count(*renderer) + state.search.static_rays;
   figures->steps = {renderer->timings.pose_ms, renderer->timings.refit_ms, state.follow_ms, state.find_ms,
@@ -83,8 +80,8 @@ void count_changes(const Vec3* image, const Vec3* last, float exposure, const Se
 }
 
 bool was_retraced(const Renderer& renderer, std::uint32_t x, std::uint32_t y) {
-  if (renderer.coherence_state.whole_because != nullptr) return true;
-  const Coherence& c = renderer.coherence;
+  if (renderer.history.state.whole_because != nullptr) return true;
+  const Coherence& c = renderer.history.coherence;
   const std::uint32_t tile = y / kChangeTileSide * c.tile_columns + x / kChangeTileSide;
   return (c.changed[tile] >> (kChangeTileSide * (y % kChangeTileSide) + x % kChangeTileSide) & 1) != 0;
 }
@@ -160,10 +157,10 @@ void make_room(const CoherencePair& pair, const FrameRange& range, PendingFrames
   const std::size_t pixels = std::size_t(renderer.settings.width) * renderer.settings.height;
   run->range = range;
   run->width = renderer.settings.width, run->height = renderer.settings.height;
-  for (int i = 0; i < renderer.memory.part_count; ++i)
-    if (std::strcmp(renderer.memory.parts[i].name, "coherence") == 0)
-      run->coherence_bytes = renderer.memory.parts[i].bytes;
-  run->table_bytes = renderer.coherence.tables.words.bytes();
+  for (int i = 0; i < renderer.memory.plan.part_count; ++i)
+    if (std::strcmp(renderer.memory.plan.parts[i].name, "coherence") == 0)
+      run->coherence_bytes = renderer.memory.plan.parts[i].bytes;
+  run->table_bytes = renderer.history.coherence.tables.words.bytes();
   run->frames.reserve(std::size_t(range.last) - range.first + 1);
   for (std::uint32_t frame : kFigureFrames)
     if (frame >= range.first && frame <= range.last) {
@@ -185,7 +182,7 @@ Status warm_up(const CoherencePair& pair, std::uint32_t frame, bool* complete) {
   RETURN_IF_ERROR(
       render_whole(pair.whole, seconds, pair.coherent->settings.coherence_by_tables, &ignored.whole, complete));
   if (*complete) RETURN_IF_ERROR(render_changes(pair.coherent, seconds, &ignored, complete));
-  forget_frame(&pair.coherent->coherence);
+  forget_last_frame(&pair.coherent->history);
   return success();
 }
 
@@ -212,7 +209,7 @@ FrameFigures sum_of(const SequenceRun& run, std::size_t begin, std::size_t end) 
 Status run_sequence(const CoherencePair& pair, const FrameRange& range, Progress* progress, std::uint64_t done,
                     SequenceRun* run) {
   CHECK(pair.whole != nullptr && pair.coherent != nullptr && pair.whole != pair.coherent);
-  CHECK(pair.coherent->coherence_state.planned);
+  CHECK(pair.coherent->history.state.planned);
   CHECK_LE(range.first, range.last);
   CHECK_GT(pair.whole->scene.info.frames_per_second, 0);
   PendingFrames batch;
@@ -226,7 +223,7 @@ Status run_sequence(const CoherencePair& pair, const FrameRange& range, Progress
     const std::uint64_t before = done + 2 * (first - range.first);
     status =
         render_batch(pair, static_cast<std::uint32_t>(first), frame_count, before, progress, &batch, run, &finished);
-    if (status.ok) status = keep_batch(finished, pair.coherent->exposure, &batch, run);
+    if (status.ok) status = keep_batch(finished, pair.coherent->view.exposure, &batch, run);
     complete = finished == frame_count;
   }
   unseal_memory();

@@ -60,7 +60,7 @@ void forget(ReferenceView* view) {
 Status prepare_reference(ReferenceView* view, Renderer* renderer, double seconds) {
   const Settings before = renderer->settings;
   RETURN_IF_ERROR(change_settings(renderer, reference_settings(before)));
-  Status status = prepare_frame(renderer, seconds);
+  Status status = begin_frame(renderer, {seconds});
   if (status.ok) {
     view->frame = renderer->frame;
     view->lights.assign(renderer->frame.lights.begin(), renderer->frame.lights.end());
@@ -74,7 +74,7 @@ Status prepare_reference(ReferenceView* view, Renderer* renderer, double seconds
 Status aim(ReferenceView* view, Renderer* renderer, double seconds) {
   SealPause pause;
   bool stands = view->aimed && view->seconds == seconds;
-  if (stands && is_same(view->camera, renderer->camera)) return success();
+  if (stands && is_same(view->camera, renderer->view.camera)) return success();
   view->aimed = false;
   RETURN_IF_ERROR(prepare_reference(view, renderer, seconds));
   if (!stands) {
@@ -82,7 +82,7 @@ Status aim(ReferenceView* view, Renderer* renderer, double seconds) {
     view->reference = make_reference(view->frame, &arena,
                                      view->reference_options.transport == Transport::physical ? kGuidePathCount : 0);
   }
-  view->camera = renderer->camera, view->seconds = seconds, view->aimed = true;
+  view->camera = renderer->view.camera, view->seconds = seconds, view->aimed = true;
   forget(view);
   return success();
 }
@@ -132,13 +132,14 @@ std::vector<Vec3> mean_of_seeds(const ReferenceView& view, std::initializer_list
 // Call when all pixels have equally many samples.
 void measure_errors(ReferenceView* view, const Renderer& renderer) {
   SealPause pause;
-  std::vector<double> light = exposed_light(renderer.image.data, renderer.image.count, renderer.exposure);
+  std::vector<double> light = exposed_light(renderer.image.data, renderer.image.count, renderer.view.exposure);
   std::vector<double> seeds[kSeedCount];
   for (std::uint32_t seed = 0; seed < kSeedCount; ++seed)
-    seeds[seed] = exposed_light(mean_of_seeds(*view, {seed}).data(), view->shown.size(), renderer.exposure);
-  std::vector<double> mean = exposed_light(mean_of_seeds(*view, {0, 1}).data(), view->shown.size(), renderer.exposure);
-  Levels levels =
-      displayed_levels(renderer.image.data, view->width, view->height, renderer.exposure, kOutputFormats[view->output]);
+    seeds[seed] = exposed_light(mean_of_seeds(*view, {seed}).data(), view->shown.size(), renderer.view.exposure);
+  std::vector<double> mean =
+      exposed_light(mean_of_seeds(*view, {0, 1}).data(), view->shown.size(), renderer.view.exposure);
+  Levels levels = displayed_levels(renderer.image.data, view->width, view->height, renderer.view.exposure,
+                                   kOutputFormats[view->output]);
   view->errors.flip = mean_of(
       flip_errors(encoded_light(mean), encoded_levels(levels), view->width, view->height, kHandheldPixelsPerDegree));
   view->errors.rmse = unbiased_rmse(seeds[0], seeds[1], light);
@@ -192,7 +193,7 @@ std::uint32_t sample_count(const SideBySide& side_by_side) { return kSeedCount *
 const Vec3* picture_beside(SideBySide* side_by_side, const Renderer& renderer) {
   ReferenceView* view = view_of(side_by_side);
   std::uint32_t middle = view->width / 2;
-  float white = 1 / renderer.exposure;
+  float white = 1 / renderer.view.exposure;
   for (std::uint32_t y = 0; y < view->height; ++y) {
     std::uint32_t samples = view->samples + (y < view->row ? 1 : 0);
     for (std::uint32_t x = 0; x < view->width; ++x) {

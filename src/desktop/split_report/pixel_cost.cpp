@@ -27,11 +27,9 @@ struct OneThread {
 Status measure_adding(Renderer* renderer, std::uint32_t pitch, double* ns) {
   const Settings& settings = renderer->settings;
   std::vector<Hit> hits(first_hit_count(settings));
-  RETURN_IF_ERROR(prepare_frame(renderer, 0));
-  renderer->frame.first_hits = hits.data();
-  SpanList list = whole_frame(renderer);
-  trace_frame(renderer, list_source(&list));
-  renderer->frame.first_hits = nullptr;
+  FrameTask task;
+  task.first_hits = hits.data();
+  RETURN_IF_ERROR(render_frame(renderer, task));
   const LightGrid grid = light_grid(settings, pitch);
   std::vector<MappedSurface> surfaces(light_count(grid));
   const std::vector<Vec3> lights(light_count(grid), Vec3{1, 1, 1});

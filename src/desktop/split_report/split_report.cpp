@@ -26,11 +26,11 @@ struct WholeFrames {
   CoherenceMode mode;
   CoherenceState state;
   explicit WholeFrames(Renderer* renderer)
-      : device(renderer), mode(renderer->settings.coherence), state(renderer->coherence_state) {
+      : device(renderer), mode(renderer->settings.coherence), state(renderer->history.state) {
     device->settings.coherence = CoherenceMode::off;
-    device->coherence_state = CoherenceState();
+    device->history.state = CoherenceState();
   }
-  ~WholeFrames() { device->settings.coherence = mode, device->coherence_state = state; }
+  ~WholeFrames() { device->settings.coherence = mode, device->history.state = state; }
 };
 
 struct Experiment {
@@ -45,7 +45,7 @@ struct Experiment {
   Progress* progress = nullptr;
   ~Experiment() {
     close_client(&client);
-    if (setup.device) setup.device->camera = camera.home;  // for the next experiment's path
+    if (setup.device) setup.device->view.camera = camera.home;  // for the next experiment's path
   }
 };
 
@@ -59,7 +59,7 @@ Status open_experiment(const SplitSetup& setup, SplitKind kind, Progress* progre
   e->times.resize(kChosenLaps * std::size_t(setup.frame_count));
   Renderer* renderer = setup.device;
   renderer->pace = Pace();
-  e->camera = make_camera_control(renderer->camera, renderer->accel.bounds);
+  e->camera = make_camera_control(renderer->view.camera, renderer->accel.built.bounds);
   RETURN_IF_ERROR(open_world(setup.line, *setup.store, setup.server_count, &e->world));
   ServerOptions server;
   server.thread_count = renderer->settings.threads;

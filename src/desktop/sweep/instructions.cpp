@@ -57,8 +57,8 @@ Status write_job(const Rig& rig, const Counting& counting) {
   std::vector<std::string> ids;
   for (const SweepPoint* point : counting.points) ids.push_back(id_of(*point));
   Json job = {{"size", std::to_string(renderer.settings.width) + "x" + std::to_string(renderer.settings.height)},
-              {"exposure", renderer.exposure},
-              {"accel", renderer.accel_info->name},
+              {"exposure", renderer.view.exposure},
+              {"accel", renderer.accel.info->name},
               {"configurations", ids}};
   return save_text(counting.folder.path, kJobName, job.dump(1, ' ', false, Json::error_handler_t::replace));
 }
@@ -224,7 +224,7 @@ Status render_for_valgrind(const AccuracyOptions& options) {
   Rigs rigs = {o, {}};
   SweepPlan plan;
   RETURN_IF_ERROR(plan_rigs(&rigs, &plan));
-  rigs.by_columns[kCornellSphereColumns]->opened.renderer.exposure = exposure;
+  rigs.by_columns[kCornellSphereColumns]->opened.renderer.view.exposure = exposure;
   std::map<std::string, const SweepPoint*> points;
   for (const SweepPoint& point : plan.points) points[id_of(point)] = &point;
   Rig* rig;

@@ -30,9 +30,9 @@ std::string camera_text(const CameraRays& c) {
 const char* name_of(Transport transport) { return transport == Transport::model ? "model" : "physical"; }
 
 Status prepare_for_reference(double seconds, Rig* rig) {
-  CHECK(rig != nullptr && rig->opened.renderer.accel_info != nullptr);  // opened
+  CHECK(rig != nullptr && rig->opened.renderer.accel.info != nullptr);  // opened
   RETURN_IF_ERROR(change_settings(&rig->opened.renderer, reference_settings(rig->baseline.settings)));
-  return prepare_frame(&rig->opened.renderer, seconds);
+  return begin_frame(&rig->opened.renderer, {seconds});
 }
 
 std::string reference_key(const Rig& rig, const AccuracyOptions& options, Transport transport) {

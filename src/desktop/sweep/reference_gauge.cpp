@@ -15,8 +15,8 @@ constexpr double kFlipFall = 0.35;
 
 double own_flip(const ReferenceGauge& gauge) {
   ReferencePictures pictures;
-  develop(*gauge.accumulation, static_cast<double>(gauge.rig->opened.renderer.exposure), gauge.goal.pixels_per_degree,
-          &pictures);
+  develop(*gauge.accumulation, static_cast<double>(gauge.rig->opened.renderer.view.exposure),
+          gauge.goal.pixels_per_degree, &pictures);
   return pictures.flip;
 }
 

@@ -110,7 +110,7 @@ Status render_reference(const AccuracyOptions& options, Transport transport, Rig
     state->references.push_back(name);
     RETURN_IF_ERROR(save_state(options.folder, *state));
   }
-  develop(accumulation, static_cast<double>(rig->opened.renderer.exposure), options.pixels_per_degree, pictures);
+  develop(accumulation, static_cast<double>(rig->opened.renderer.view.exposure), options.pixels_per_degree, pictures);
   return success();
 }
 

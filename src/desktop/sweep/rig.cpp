@@ -54,12 +54,12 @@ Settings dearest(const Scene& scene, Settings settings) {
 }
 
 Status load_cornell(std::uint32_t sphere_columns, Renderer* renderer, SceneStorage* storage) {
-  if (tessellated_cornell_need(sphere_columns) > arena_free(renderer->scene_arena))
+  if (tessellated_cornell_need(sphere_columns) > arena_free(renderer->memory.scene))
     return failure("cornell with a sphere of %u columns does not fit in --memory: raise it", sphere_columns);
-  build_tessellated_cornell(sphere_columns, &renderer->scene_arena, &renderer->scene);
-  CHECK_LE(renderer->scene_arena.used, tessellated_cornell_need(sphere_columns));
+  build_tessellated_cornell(sphere_columns, &renderer->memory.scene, &renderer->scene);
+  CHECK_LE(renderer->memory.scene.used, tessellated_cornell_need(sphere_columns));
   *storage = SceneStorage();
-  storage->arena_bytes = renderer->scene_arena.used;
+  storage->arena_bytes = renderer->memory.scene.used;
   return success();
 }
 
@@ -73,10 +73,10 @@ Status open_with(const AccuracyOptions& options, const CommonOptions& common, st
   hooks.loaded = [&](const SceneSource& source, Renderer* renderer) {
     rig->baseline.settings = renderer->settings;
     rig->scene_hash = hash_of(source, renderer->scene);
-    if (renderer->animation != 0) rig->scene_hash += ", animation " + common.animation;
+    if (renderer->view.animation != 0) rig->scene_hash += ", animation " + common.animation;
     ContentHash identity;
     const bool has_own_look = common.background.empty() && common.environment.empty() &&
-                              common.light == CommonOptions().light && renderer->animation == 0;
+                              common.light == CommonOptions().light && renderer->view.animation == 0;
     if (has_own_look && identify_scene(source, renderer, &identity).ok)
       rig->front_path = front_path(common.scene, identity);
     renderer->settings = dearest(renderer->scene, renderer->settings);
@@ -86,13 +86,13 @@ Status open_with(const AccuracyOptions& options, const CommonOptions& common, st
   RETURN_IF_ERROR(start_scene(&rig->opened, common));
   Renderer* renderer = &rig->opened.renderer;
   RETURN_IF_ERROR(change_settings(renderer, rig->baseline.settings));
-  RETURN_IF_ERROR(prepare_frame(renderer, options.seconds));
+  RETURN_IF_ERROR(begin_frame(renderer, {options.seconds}));
   ExposureChoice choice;
   float factor;
   RETURN_IF_ERROR(parse_exposure(common.exposure, &choice, &factor));
   if (renderer->scene.info.auto_exposure == 0) return success();
-  renderer->exposure = measure_exposure(renderer);
-  return change_exposure(factor, &renderer->exposure);
+  renderer->view.exposure = measure_exposure(renderer);
+  return change_exposure(factor, &renderer->view.exposure);
 }
 
 // Number of whole-picture rows with as many pixels as a frame.
@@ -147,7 +147,7 @@ std::uint32_t take_part(Rig* rig) {
 Status time_frame(Rig* rig, const Configuration& configuration, double seconds, double* ns_per_pixel) {
   Renderer* renderer = &rig->opened.renderer;
   RETURN_IF_ERROR(change_settings(renderer, configuration.settings));
-  RETURN_IF_ERROR(prepare_frame(renderer, seconds));  // a change of settings does not count towards the frame
+  RETURN_IF_ERROR(begin_frame(renderer, {seconds}));  // a change of settings does not count towards the frame
   std::uint64_t start = clock_ns();
   RETURN_IF_ERROR(render_frame(renderer, seconds, Aov::none, &interrupted));
   double frame_ns = static_cast<double>(clock_ns() - start);
@@ -157,7 +157,7 @@ Status time_frame(Rig* rig, const Configuration& configuration, double seconds, 
       line_bytes = width * output.format.bits_per_pixel / 8;
   rig->packed.resize((static_cast<std::size_t>(line_bytes) * renderer->settings.height + 3) / 4);
   start = clock_ns();
-  pack_rows(renderer->image.data, width, height, 0, static_cast<int>(row_count(*rig)), renderer->exposure,
+  pack_rows(renderer->image.data, width, height, 0, static_cast<int>(row_count(*rig)), renderer->view.exposure,
             output.format, Rotation::none, output.dither, rig->packed.data(), line_bytes);
   double pack_ns = static_cast<double>(clock_ns() - start);
   *ns_per_pixel = (frame_ns + pack_ns) / static_cast<double>(renderer->image.count);
@@ -171,9 +171,9 @@ Status count_instructions(Rig* rig, const Configuration& configuration, double s
   if (start == 0) return success();
   Renderer* renderer = &rig->opened.renderer;
   RETURN_IF_ERROR(change_settings(renderer, configuration.settings));
-  RETURN_IF_ERROR(prepare_frame(renderer, seconds));
+  RETURN_IF_ERROR(begin_frame(renderer, {seconds}));
   start = platform::instruction_count();
-  RETURN_IF_ERROR(prepare_frame(renderer, seconds));  // prepares again, so that this is not counted
+  RETURN_IF_ERROR(begin_frame(renderer, {seconds}));  // prepares again, so that this is not counted
   std::uint64_t prepared = platform::instruction_count();
   double ns_per_pixel;
   RETURN_IF_ERROR(time_frame(rig, configuration, seconds, &ns_per_pixel));

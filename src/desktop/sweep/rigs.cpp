@@ -43,7 +43,7 @@ Status rig_for(Rigs* rigs, const Configuration& configuration, Rig** rig) {
   std::unique_ptr<Rig>& there = rigs->by_columns[configuration.sphere_columns];
   if (!there) {
     RETURN_IF_ERROR(open_rig(rigs->options, configuration.sphere_columns, &there));
-    there->opened.renderer.exposure = rigs->by_columns[kCornellSphereColumns]->opened.renderer.exposure;
+    there->opened.renderer.view.exposure = rigs->by_columns[kCornellSphereColumns]->opened.renderer.view.exposure;
   }
   *rig = there.get();
   return success();

@@ -76,7 +76,7 @@ Json key_of(const SweepRun& run, const Rig& rig) {
               {"ppd", o.pixels_per_degree},
               {"threads", settings.threads},
               {"isa", isa_name(active_isa())},
-              {"accel", rig.opened.renderer.accel_info->name},
+              {"accel", rig.opened.renderer.accel.info->name},
               {"emulate", c.emulate},
               {"configurations", crc32_z(0, reinterpret_cast<const Bytef*>(ids.data()), ids.size())}});
   return key;
@@ -87,8 +87,8 @@ Json key_of(const SweepRun& run, const Rig& rig) {
 Status find_levels(const SweepRun& run, Rig* rig, const Configuration& configuration, Levels* levels,
                    double* bytes_per_frame) {
   const Renderer& renderer = rig->opened.renderer;
-  *levels = displayed_levels(renderer.image.data, renderer.settings.width, renderer.settings.height, renderer.exposure,
-                             kOutputFormats[configuration.output]);
+  *levels = displayed_levels(renderer.image.data, renderer.settings.width, renderer.settings.height,
+                             renderer.view.exposure, kOutputFormats[configuration.output]);
 #ifdef POCKETRAY_HAVE_NETWORK
   if (!bytes_per_frame && !configuration.near_lossless) return success();
   SentPicture sent;
@@ -111,7 +111,7 @@ Status find_errors(const SweepRun& run, Rig* rig, const SweepPoint& point, Point
   bool counts_bytes = &point == &run.plan.points[0] || point.configuration.near_lossless;
   RETURN_IF_ERROR(find_levels(run, rig, point.configuration, &levels, counts_bytes ? &f->bytes_per_frame : nullptr));
   if (interrupted) return success();
-  std::vector<double> light = exposed_light(renderer.image.data, renderer.image.count, renderer.exposure);
+  std::vector<double> light = exposed_light(renderer.image.data, renderer.image.count, renderer.view.exposure);
   CHECK_EQ(light.size(), run.reference.mean.size());
   const ReferencePictures& reference = run.reference;
   double ppd = run.options.pixels_per_degree;

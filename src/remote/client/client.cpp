@@ -286,7 +286,7 @@ void begin_client_frame(Client* client, const Renderer& renderer, const FrameSta
   }
   CHECK_EQ(renderer.settings.width, client->settings.width);
   CHECK_EQ(renderer.settings.height, client->settings.height);
-  CHECK_GT(renderer.exposure, 0);
+  CHECK_GT(renderer.view.exposure, 0);
   FrameShare last = client->share;
   client->share = FrameShare();
   client->share.measured_ns = last.measured_ns;
@@ -301,15 +301,15 @@ void begin_client_frame(Client* client, const Renderer& renderer, const FrameSta
   client->arrivals.asked_ns = client_now_ns(*client);
   FrameRequest* q = &client->request;
   ++q->frame;
-  q->scene = client->scene, q->seconds = start.seconds, q->animation = renderer.animation;
+  q->scene = client->scene, q->seconds = start.seconds, q->animation = renderer.view.animation;
   q->camera_stated = client->options.has_scene ||
-                     renderer.camera_overridden;  // without the scene, an animated camera moves as on the server
-  q->camera_index = static_cast<std::uint16_t>(renderer.camera_index);
-  q->camera = renderer.camera;
+                     renderer.view.camera_overridden;  // without the scene, an animated camera moves as on the server
+  q->camera_index = static_cast<std::uint16_t>(renderer.view.camera_index);
+  q->camera = renderer.view.camera;
   q->camera.node = kNone;
   q->settings = renderer.settings;
   if (client->light.by_effect) q->settings.indirect = client->options.light.indirect;
-  q->exposure = renderer.exposure;
+  q->exposure = renderer.view.exposure;
   q->dither = client->options.dither;
   q->format = client->options.format;
   q->coarse_first = false;

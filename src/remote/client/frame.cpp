@@ -69,7 +69,7 @@ void next_part(ClientRows* s, SpanBatch* batch) {
 bool take_changed_rows(ClientRows* s, bool one_by_one) {
   const Renderer& renderer = *s->renderer;
   std::uint32_t rows_max = kTileRows * renderer.settings.threads;
-  if (renderer.shared_rows.records) rows_max = std::min(4 * rows_max, listed_rows_max(renderer));
+  if (renderer.history.records) rows_max = std::min(4 * rows_max, listed_rows_max(renderer));
   if (one_by_one) rows_max = 1;
   while (take_device_rows(s->client, rows_max, &s->row_begin, &s->row_end)) {
     std::uint64_t pixel_count = 0;
@@ -144,8 +144,8 @@ bool merge_rows(void* context, const SpanBatch& batch) {
   if (has_all) s.lights = light_rows(s.renderer, client) || s.lights;
   if (has_all && is_lit(*client) && is_verified(s.renderer, client)) {
     if (client->options.has_scene) {
-      end_shared_rows(s.renderer);
-      const Coherence& c = s.renderer->coherence;
+      end_frame(s.renderer);
+      const Coherence& c = s.renderer->history.coherence;
       client->kept_count = client->prepared && c.signature.known ? c.kept_count : 0;
     }
     end_client_frame(client);
@@ -161,19 +161,13 @@ bool merge_rows(void* context, const SpanBatch& batch) {
 // Prepares the frame and finds what the device must trace of each row. Sets `unchanged` and the time taken.
 Status prepare_rows(Renderer* renderer, Client* client, FrameStart* start) {
   const std::uint64_t begin_ns = client_now_ns(*client);
-  end_shared_rows(renderer);  // of an abandoned frame
-  RETURN_IF_ERROR(prepare_frame(renderer, start->seconds));
+  FrameTask task = {start->seconds, client->light.by_effect ? FramePurpose::shared_light : FramePurpose::shared_rows};
+  if (client->light.by_effect) task.first_hits = client->light.first_hits.data;
+  RETURN_IF_ERROR(begin_frame(renderer, task));
   const std::uint64_t posed_ns = renderer->pace.clock->now_ns();
-  if (client->light.by_effect) {
-    // Light can change where nothing else does: all is traced.
-    forget_frame(&renderer->coherence);
-    renderer->frame.first_hits = client->light.first_hits.data;
-  } else {
-    begin_shared_rows(renderer, 0, renderer->settings.height);
-  }
   start->unchanged = client->complete && client->kept_count > 0 &&
-                     client->kept_count == renderer->coherence.kept_count && is_shared_frame_unchanged(*renderer) &&
-                     renderer->exposure == client->request.exposure;
+                     client->kept_count == renderer->history.coherence.kept_count &&
+                     is_shared_frame_unchanged(*renderer) && renderer->view.exposure == client->request.exposure;
   search_shared_rows(renderer, ~0u);
   const float width = static_cast<float>(renderer->settings.width);
   const float own_part = client->light.by_effect ? static_cast<float>(own_light_part(*client)) : 1;
@@ -197,8 +191,8 @@ Status prepare_rows(Renderer* renderer, Client* client, FrameStart* start) {
 // camera, the pose must come first.
 bool asks_first(const Renderer& renderer, const Client& client, double seconds) {
   const Array<const Camera>& cameras = renderer.scene.cameras;
-  const bool camera_known = renderer.camera_overridden || renderer.camera_index >= cameras.count ||
-                            cameras[renderer.camera_index].node == kNone;
+  const bool camera_known = renderer.view.camera_overridden || renderer.view.camera_index >= cameras.count ||
+                            cameras[renderer.view.camera_index].node == kNone;
   return client.options.has_scene && camera_known && renderer.pose.positions.count > 0 && !client.unchanged &&
          seconds != client.request.seconds;
 }
@@ -209,8 +203,8 @@ void pack_device_rows(const Renderer& renderer, Client* client, std::uint32_t ro
   int width = static_cast<int>(renderer.settings.width), height = static_cast<int>(renderer.settings.height);
   bool small = client->options.format == WireFormat::rgb565;
   pack_rows(renderer.image.data, width, height, static_cast<int>(row_begin), static_cast<int>(row_end),
-            renderer.exposure, small ? kRgb565 : kRgb888, Rotation::none, client->options.dither, client->pixels.data,
-            width * static_cast<int>(pixel_bytes(client->options.format)));
+            renderer.view.exposure, small ? kRgb565 : kRgb888, Rotation::none, client->options.dither,
+            client->pixels.data, width * static_cast<int>(pixel_bytes(client->options.format)));
 }
 
 void prepare_device(Renderer* renderer, Client* client) {
@@ -242,7 +236,6 @@ bool advance_frame(Renderer* renderer, Client* client, std::uint64_t deadline_ns
   ClientRows rows;
   rows.renderer = renderer, rows.client = client;
   SpanSource source = {&rows, next_rows, merge_rows, pack_batch};
-  source.is_coherent = true;
   source.deadline_ns = deadline_ns;
   std::atomic<bool> coarse_comes{false};
   rows.coarse_comes = &coarse_comes;

@@ -59,7 +59,7 @@ Status find_on(Inquiry* inquiry, const std::string& name, SceneEntry* entry) {
 // 32.
 Status fetch(Inquiry* inquiry, const std::string& name, const SceneEntry& entry, Renderer* renderer,
              SceneSource* source) {
-  auto* bytes = static_cast<std::uint8_t*>(arena_try_allocate(&renderer->scene_arena, entry.byte_count));
+  auto* bytes = static_cast<std::uint8_t*>(arena_try_allocate(&renderer->memory.scene, entry.byte_count));
   if (!bytes) return scene_too_large(name, entry.byte_count, renderer->settings.memory_bytes, source);
   std::size_t byte_count = to_size(entry.byte_count);
   Progress progress = start_progress("fetching the scene", byte_count);
@@ -80,7 +80,7 @@ Status load_from_servers(ConnectedServers* s, const std::string& name, Renderer*
   for (std::size_t i = 0; i < s->addresses.size(); ++i) {
     Inquiry inquiry;
     SceneEntry entry;
-    std::size_t mark = arena_mark(renderer->scene_arena);
+    std::size_t mark = arena_mark(renderer->memory.scene);
     Status status = ask(s, i, &inquiry);
     if (status.ok) status = find_on(&inquiry, name, &entry);
     if (status.ok) {
@@ -88,9 +88,9 @@ Status load_from_servers(ConnectedServers* s, const std::string& name, Renderer*
       s->is_named = true;
       status = fetch(&inquiry, name, entry, renderer, source);
     }
-    if (status.ok) storage->arena_bytes = renderer->scene_arena.used;
+    if (status.ok) storage->arena_bytes = renderer->memory.scene.used;
     if (status.ok || source->bytes_wanted > 0) return status;
-    arena_release(&renderer->scene_arena, mark);
+    arena_release(&renderer->memory.scene, mark);
     s->is_named = false;
     add_reason(*s, i, status.message, &reasons);
   }
@@ -111,7 +111,7 @@ Status name_loaded(ConnectedServers* s, SceneSource* source, Renderer* renderer)
   s->is_named = status.ok;
   if (!status.ok)
     source->bytes_wanted =
-        renderer->settings.memory_bytes - arena_free(renderer->scene_arena) + baked_size(renderer->scene);
+        renderer->settings.memory_bytes - arena_free(renderer->memory.scene) + baked_size(renderer->scene);
   return status;
 }
 
@@ -211,15 +211,15 @@ Status open_thin(ConnectedServers* s, const CommonOptions& o, const OutputNeed& 
   start_renderer(opened->block, limit, query.settings, renderer);
   RETURN_IF_ERROR(plan_without_scene(renderer, output));
   renderer->pace = pace;
-  renderer->camera = s->view.camera;
-  renderer->camera_index = o.camera_index;
-  renderer->animation = s->view.animation;
-  renderer->camera_overridden = query.camera_stated;
-  renderer->exposure = s->view.exposure;
-  RETURN_IF_ERROR(change_exposure(factor, &renderer->exposure));
+  renderer->view.camera = s->view.camera;
+  renderer->view.camera_index = o.camera_index;
+  renderer->view.animation = s->view.animation;
+  renderer->view.camera_overridden = query.camera_stated;
+  renderer->view.exposure = s->view.exposure;
+  RETURN_IF_ERROR(change_exposure(factor, &renderer->view.exposure));
   renderer->effects = effects_of_servers(s->view.effects);
   renderer->scene.info.frames_per_second = s->view.frames_per_second;
-  renderer->accel.bounds = s->view.bounds;
+  renderer->accel.built.bounds = s->view.bounds;
   s->is_named = s->is_thin = true;
   char line[400];
   std::snprintf(
@@ -248,7 +248,7 @@ Status open_scene_or_leave_it(Servers* servers, const CommonOptions& common, con
   end_client(s);
   s->is_named = s->is_thin = false;
   hooks.load = [s](const std::string& name, Renderer* renderer, SceneSource* source, SceneStorage* storage) {
-    renderer->animation = 0;  // the scene is the servers', even if nothing moves in it
+    renderer->view.animation = 0;  // the scene is the servers', even if nothing moves in it
     return load(s, name, renderer, source, storage);
   };
   hooks.loaded = [s, opened](const SceneSource&, Renderer* renderer) {

@@ -173,11 +173,11 @@ Status start_client(Servers* servers, Renderer* renderer, bool small_pixels, boo
   options.log = print_line;
   s->totals = ServersTotals();
   s->last = FrameShare();
-  RETURN_IF_ERROR(open_client_link(s, &renderer->frame_arena));
+  RETURN_IF_ERROR(open_client_link(s, &renderer->memory.frame));
   s->started = true;
   RETURN_IF_ERROR(make_client(options, renderer->settings, s->scene, s->client_link ? s->client_link : s->link,
                               s->addresses.data(), static_cast<std::uint32_t>(s->addresses.size()),
-                              &renderer->frame_arena, &s->client));
+                              &renderer->memory.frame, &s->client));
   for (std::uint32_t i = 0; i < s->client.server_count; ++i)
     s->client.servers[i].lied = s->client.servers[i].told = s->lied[i];
   return success();
@@ -250,7 +250,7 @@ void show_own_picture(Servers* servers, const Renderer& renderer) {
   const Client& client = connected(servers)->client;
   MergedPicture merged = merged_picture(*servers);
   int height = static_cast<int>(renderer.settings.height);
-  pack_rows(renderer.image.data, static_cast<int>(renderer.settings.width), height, 0, height, renderer.exposure,
+  pack_rows(renderer.image.data, static_cast<int>(renderer.settings.width), height, 0, height, renderer.view.exposure,
             merged.format, Rotation::none, client.options.dither, client.pixels.data, merged.line_bytes);
 }
 

@@ -78,7 +78,6 @@ void render_pixels(Renderer* renderer, Client* client, std::uint32_t count) {
   CHECK(count > 0 && count <= kSpotChecksMax);
   PixelCheck check = {renderer, client, count};
   SpanSource source = {&check};
-  source.is_coherent = true;
   source.next = [](void* context, SpanBatch* batch) {
     const PixelCheck& p = *static_cast<PixelCheck*>(context);
     batch->spans = p.client->verifier.spans.data, batch->span_count = p.count;

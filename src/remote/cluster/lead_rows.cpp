@@ -92,7 +92,7 @@ PieceLimits ClusterLead::limits_of(const Slot& slot, std::uint32_t index, std::u
   limits.window = window;
   limits.pixels = kFirstPixels * rank.threads;
   if (session.trace_ns > 0)
-    limits.pixels = slice_pixels(session.renderer.settings, session.renderer.light_points.count, session.trace_ns,
+    limits.pixels = slice_pixels(session.renderer.settings, session.renderer.lights.points.count, session.trace_ns,
                                  kPieceNs * rank.threads);
   double speed = 0;
   for (const Rank& other : ranks_)
@@ -159,7 +159,7 @@ Slice ClusterLead::trace(Session* session, std::uint64_t slice_ns) {
   CHECK_EQ(slot->job_number, session->job_number);
   RowShare* share = &slot->share;
   if (!slot->is_begun) {
-    slot->keeps_rows = session->renderer.shared_rows.records;
+    slot->keeps_rows = session->renderer.history.records;
     begin_row_share(job.request, slot->keeps_rows, share);
     slot->is_begun = true;
   }

@@ -46,7 +46,6 @@ std::uint32_t trace_piece(Session* session, const RowPiece& piece, std::uint32_t
   CHECK(piece.column_begin < piece.column_end && piece.column_end <= settings.width);
   PieceSource source = {renderer, piece};
   SpanSource spans = {&source, next_rows, rows_finished};
-  spans.is_coherent = true;
   trace_frame(renderer, spans);
   if (piece.column_end < settings.width) return source.traced;
   for (std::uint32_t row = piece.row_begin; row < piece.row_end; ++row)

@@ -62,11 +62,10 @@ Slice trace_coarse(Session* session, std::uint64_t slice_ns) {
   const std::uint32_t threads = renderer->settings.threads;
   GridPart part;
   part.session = session;
-  part.pixels_max = session->trace_ns > 0 ? slice_pixels(renderer->settings, renderer->light_points.count,
+  part.pixels_max = session->trace_ns > 0 ? slice_pixels(renderer->settings, renderer->lights.points.count,
                                                          session->trace_ns * threads, slice_ns * threads)
                                           : kFirstPixels * threads;
   SpanSource source = {&part, next_part, [](void*, const SpanBatch&) { return true; }};
-  source.is_coherent = true;
   trace_frame(renderer, source);
   Slice slice = {};
   slice.is_coarse = true;
@@ -100,7 +99,7 @@ void send_coarse(Session* session) {
       const auto x = static_cast<std::uint16_t>(i * kCoarseSide);
       spans[i] = {static_cast<std::uint16_t>(row * kCoarseSide), x, static_cast<std::uint16_t>(x + 1)};
     }
-    pack_spans(renderer.image.data, static_cast<int>(renderer.settings.width), spans, columns, renderer.exposure,
+    pack_spans(renderer.image.data, static_cast<int>(renderer.settings.width), spans, columns, renderer.view.exposure,
                pack_format(request.format), request.dither, pixels);
     pixels += columns * pixel_bytes(request.format);
   }

@@ -64,7 +64,7 @@ bool same_pixels(const Settings& a, const Settings& b) {
 bool is_built_for(const Session& session) {
   const FrameRequest& request = session.job.request;
   return session.built_scene == session.job.scene && same_pixels(session.renderer.settings, request.settings) &&
-         session.renderer.camera_index == request.camera_index;
+         session.renderer.view.camera_index == request.camera_index;
 }
 
 // Rows of the largest chunk within the limits of request, codec and client.
@@ -101,14 +101,14 @@ Status plan_memory(Session* session, const JobTools& tools, WireError* code) {
   *code = WireError::bad_request;
   RETURN_IF_ERROR(validate_settings(settings));
   const Scene& scene = session->job.scene->scene;
-  renderer->camera_index = session->job.request.camera_index;
-  if (renderer->camera_index > 0 && renderer->camera_index >= scene.cameras.count)
-    return failure("no camera %u: the scene has %u", renderer->camera_index, scene.cameras.count);
+  renderer->view.camera_index = session->job.request.camera_index;
+  if (renderer->view.camera_index > 0 && renderer->view.camera_index >= scene.cameras.count)
+    return failure("no camera %u: the scene has %u", renderer->view.camera_index, scene.cameras.count);
   start_renderer(session->block.base + session->block.used, arena_free(session->block), settings, renderer);
   renderer->scene = scene;
   *code = WireError::too_large;
   RETURN_IF_ERROR(plan_renderer(renderer, SceneStorage(), 0));
-  session->own_camera = renderer->camera;
+  session->own_camera = renderer->view.camera;
   renderer->workers = tools.workers;
   session->job.stage = JobStage::build;
   return success();
@@ -122,12 +122,12 @@ JobStage after_build(const Session& session) {
 // required.
 Status build(Session* session) {
   Renderer* renderer = &session->renderer;
-  std::size_t bytes = arena_need(renderer->scene_arena.used);
-  for (std::size_t arena : renderer->memory.arena_bytes) bytes += arena;
-  const std::size_t end = static_cast<std::size_t>(renderer->scene_arena.base - session->block.base) + bytes;
+  std::size_t bytes = arena_need(renderer->memory.scene.used);
+  for (std::size_t arena : renderer->memory.plan.arena_bytes) bytes += arena;
+  const std::size_t end = static_cast<std::size_t>(renderer->memory.scene.base - session->block.base) + bytes;
   if (!touch(session, std::min(end, session->block.capacity))) return success();
   RETURN_IF_ERROR(build_renderer_unexposed(renderer));
-  session->own_exposure = wants_exposure(*renderer) ? 0 : renderer->exposure;
+  session->own_exposure = wants_exposure(*renderer) ? 0 : renderer->view.exposure;
   session->built_scene = session->job.scene;
   session->job.stage = after_build(*session);
   return success();
@@ -144,15 +144,14 @@ Status plan(Session* session, const JobTools& tools, WireError* code) {
   }
   if (session->job.request.light_pitch > 0) RETURN_IF_ERROR(check_light_map(*session));
   if (!is_built_for(*session)) return plan_memory(session, tools, code);
-  end_shared_rows(&session->renderer);  // while it has the last frame's geometry
   session->job.stage = after_build(*session);
   if (session->own_exposure > 0) return success();
   // Its measurement was abandoned for another request: restart it.
-  session->renderer.camera = session->own_camera;
-  session->renderer.camera_overridden = false;
-  session->renderer.animation = 0;
-  session->renderer.exposure = session->renderer.scene.info.exposure;
-  return prepare_frame(&session->renderer, 0);
+  session->renderer.view.camera = session->own_camera;
+  session->renderer.view.camera_overridden = false;
+  session->renderer.view.animation = 0;
+  session->renderer.view.exposure = session->renderer.scene.info.exposure;
+  return begin_frame(&session->renderer, {0});
 }
 
 // Sets the requested view and time.
@@ -161,22 +160,24 @@ Status aim(Session* session) {
   CHECK_GT(session->own_exposure, 0);
   FrameJob* job = &session->job;
   Renderer* renderer = &session->renderer;
-  renderer->animation = job->request.animation;
-  renderer->camera = session->own_camera;
-  renderer->camera_overridden = false;
+  renderer->view.animation = job->request.animation;
+  renderer->view.camera = session->own_camera;
+  renderer->view.camera_overridden = false;
   if (job->request.camera_stated) RETURN_IF_ERROR(set_camera(renderer, job->request.camera));
   job->stage = JobStage::rows;
   if (job->is_view_query) {
     // Like build_renderer(), but from the camera's position.
-    renderer->exposure = renderer->scene.info.exposure;
-    RETURN_IF_ERROR(prepare_frame(renderer, 0));
+    renderer->view.exposure = renderer->scene.info.exposure;
+    RETURN_IF_ERROR(begin_frame(renderer, {0}));
     job->stage = JobStage::view_exposure;
     return job->measure_exposure || wants_exposure(*renderer) ? success() : answer_view_query(session);
   }
-  renderer->exposure = job->request.exposure > 0 ? job->request.exposure : session->own_exposure;
-  RETURN_IF_ERROR(prepare_frame(renderer, job->request.seconds));
-  job->stage = JobStage::light;
-  if (job->request.light_pitch == 0) begin_job_rows(session);
+  renderer->view.exposure = job->request.exposure > 0 ? job->request.exposure : session->own_exposure;
+  const bool has_light = job->request.light_pitch > 0;
+  FrameTask task = {job->request.seconds, has_light ? FramePurpose::shared_light : FramePurpose::shared_rows};
+  task.rows = {job->request.row_begin, job->request.row_end};
+  RETURN_IF_ERROR(begin_frame(renderer, task));
+  job->stage = has_light ? JobStage::light : JobStage::search;
   return success();
 }
 
@@ -184,7 +185,7 @@ Status aim(Session* session) {
 Status probe(Session* session, std::uint64_t slice_ns, Slice* slice) {
   CHECK(session->built_scene == session->job.scene);
   const Renderer& renderer = session->renderer;
-  std::uint32_t count = slice_pixels(renderer.settings, renderer.light_points.count, session->probe_ns, slice_ns);
+  std::uint32_t count = slice_pixels(renderer.settings, renderer.lights.points.count, session->probe_ns, slice_ns);
   if (session->probe_ns == 0) count = std::min(count, kFirstPixels);
   *slice = {};
   slice->is_probe = true;
@@ -198,17 +199,11 @@ Status probe(Session* session, std::uint64_t slice_ns, Slice* slice) {
     session->job.probe = ExposureProbe();
     return success();
   }
-  session->renderer.exposure = exposure;
+  session->renderer.view.exposure = exposure;
   return answer_view_query(session);
 }
 
 }  // namespace
-
-void begin_job_rows(Session* session) {
-  const FrameRequest& request = session->job.request;
-  begin_shared_rows(&session->renderer, request.row_begin, request.row_end);
-  session->job.stage = JobStage::search;
-}
 
 Status step_job(Session* session, const JobTools& tools, std::uint64_t slice_ns, Slice* slice, WireError* code) {
   CHECK(has_job(*session));

@@ -65,8 +65,8 @@ Slice trace_light(Session* session, std::uint64_t slice_ns) {
   part.session = session;
   part.lights_max = kFirstPixels * threads;
   if (session->light_ns > 0)
-    part.lights_max =
-        slice_pixels(renderer->settings, renderer->light_points.count, session->light_ns * threads, slice_ns * threads);
+    part.lights_max = slice_pixels(renderer->settings, renderer->lights.points.count, session->light_ns * threads,
+                                   slice_ns * threads);
   SpanSource source = {&part, next_lights, [](void*, const SpanBatch&) { return true; }};
   source.aov = Aov::indirect_light;
   trace_frame(renderer, source);
@@ -102,13 +102,16 @@ void send_light(Session* session) {
   message.light_map.frame = request.frame;
   message.light_map.light_ps = picoseconds(job->work_ns, job->pixel_count);
   message.light_map.price = session->price_stated = session->price;
-  const std::size_t bytes = encode_light(light, columns, rows, kFaintest / renderer->exposure, at + prefix);
+  const std::size_t bytes = encode_light(light, columns, rows, kFaintest / renderer->view.exposure, at + prefix);
   message.light_map.bytes = {at + prefix, static_cast<std::uint32_t>(bytes)};
   send_message(session, message);
   job->has_light = false, job->sent_light = true;
   job->work_ns = job->pixel_count = 0;
   job->coarse_row = job->coarse_column = 0;
-  if (has_rows(job->traced)) return begin_job_rows(session);
+  if (has_rows(job->traced)) {
+    job->stage = JobStage::search;
+    return;
+  }
   ++session->frame_count;
   drop_job(session);
 }

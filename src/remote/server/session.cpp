@@ -98,7 +98,7 @@ void next_slice(void* context, SpanBatch* batch) {
   // trace_ns sums over all threads.
   std::uint32_t pixels_max = kFirstPixels * settings.threads;
   if (session.trace_ns > 0)
-    pixels_max = slice_pixels(settings, session.renderer.light_points.count, session.trace_ns * settings.threads,
+    pixels_max = slice_pixels(settings, session.renderer.lights.points.count, session.trace_ns * settings.threads,
                               source->slice_ns * settings.threads);
   Renderer* renderer = &source->session->renderer;
   if (job.codes_beside) batch->errand = {code_beside, source->session};
@@ -217,8 +217,8 @@ void pack_session_rows(Session* session, std::uint32_t row_begin, std::uint32_t 
   CHECK(row_begin < row_end && row_end <= renderer.settings.height);
   const int width = static_cast<int>(renderer.settings.width);
   pack_rows(renderer.image.data, width, static_cast<int>(renderer.settings.height), static_cast<int>(row_begin),
-            static_cast<int>(row_end), renderer.exposure, pack_format(request.format), Rotation::none, request.dither,
-            session->pixels.data, width * static_cast<int>(pixel_bytes(request.format)));
+            static_cast<int>(row_end), renderer.view.exposure, pack_format(request.format), Rotation::none,
+            request.dither, session->pixels.data, width * static_cast<int>(pixel_bytes(request.format)));
 }
 
 std::uint32_t slice_pixels(const Settings& settings, std::uint32_t light_point_count, double known_ns,
@@ -244,7 +244,6 @@ Slice trace_slice(Session* session, std::uint64_t slice_ns) {
   SliceSource source;
   source.session = session, source.slice_ns = slice_ns;
   SpanSource spans = {&source, next_slice, [](void*, const SpanBatch&) { return true; }};
-  spans.is_coherent = true;
   trace_frame(&session->renderer, spans);
   if (session->job.codes_beside) send_chunks(session);  // no pixel had to be traced
   return source.slice;

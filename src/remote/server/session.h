@@ -165,8 +165,6 @@ bool can_work(const Session& session);
 // Advances a job by a slice, of about `slice_ns` if it consists of pixels. Fails if the request cannot be met; *code
 // receives the reason.
 Status step_job(Session* session, const JobTools& tools, std::uint64_t slice_ns, Slice* slice, WireError* code);
-// Enters the stages of the job's rows.
-void begin_job_rows(Session* session);
 // Answers a view_query, which ends the job.
 Status answer_view_query(Session* session);
 // Number of pixels that one thread traces in about `slice_ns`, at `known_ns` each (0: unknown). Bounded so that it

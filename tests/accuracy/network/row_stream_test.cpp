@@ -22,7 +22,7 @@ std::vector<Picture> moving_frames(float* exposure) {
   Settings settings;
   settings.width = kWidth, settings.height = kHeight;
   auto test = make_renderer(built->scene, settings);
-  Camera camera = test->renderer.camera;
+  Camera camera = test->renderer.view.camera;
   std::vector<Picture> frames;
   for (std::uint32_t i = 0; i < kFrames; ++i) {
     camera.eye = camera.eye + 0.01f * cross(camera.target - camera.eye, camera.up);
@@ -30,7 +30,7 @@ std::vector<Picture> moving_frames(float* exposure) {
     REQUIRE(render_frame(&test->renderer, 0).ok);
     frames.emplace_back(test->renderer.image.begin(), test->renderer.image.end());
   }
-  *exposure = test->renderer.exposure;
+  *exposure = test->renderer.view.exposure;
   return frames;
 }
 

@@ -55,10 +55,10 @@ Status write_pictures(const std::string& folder, const std::vector<Vec3>& povray
   RETURN_IF_ERROR(write_picture((folder + "/statue-" + size + "-ours.png").c_str(), PictureOptions(), renderer));
   std::vector<Vec3> ours(renderer->image.begin(), renderer->image.end());
   std::copy(povray.begin(), povray.end(), renderer->image.begin());
-  renderer->frame_arena.used = 0;
+  renderer->memory.frame.used = 0;
   Status status = write_picture((folder + "/statue-" + size + "-povray.png").c_str(), PictureOptions(), renderer);
   std::copy(ours.begin(), ours.end(), renderer->image.begin());
-  renderer->frame_arena.used = 0;
+  renderer->memory.frame.used = 0;
   return status;
 }
 

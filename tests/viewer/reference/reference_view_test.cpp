@@ -92,7 +92,7 @@ TEST_CASE("side_by_side_shows_picture_and_reference") {
       Settings own = plain;
       own.normals = NormalMode::as_scene;
       REQUIRE(change_settings(s.renderer, own).ok);
-      REQUIRE(prepare_frame(s.renderer, 0.4).ok);
+      REQUIRE(begin_frame(s.renderer, {0.4}).ok);
       std::uint32_t other = 0;
       for (std::uint32_t y = 0; y < 16; ++y)
         for (std::uint32_t x = 0; x < 24; ++x) {
@@ -116,14 +116,14 @@ TEST_CASE("side_by_side_begins_anew_when_the_view_changes") {
   std::uint32_t before = kReferenceView.samples(*s.side_by_side);
   REQUIRE(kReferenceView.advance(s.side_by_side, s.renderer, 0, 2, 0).ok);
   CHECK(kReferenceView.samples(*s.side_by_side) >= before);
-  Camera camera = s.renderer->camera;
+  Camera camera = s.renderer->view.camera;
   camera.eye.x += 0.5f;
   REQUIRE(set_camera(s.renderer, camera).ok);
   REQUIRE(kReferenceView.advance(s.side_by_side, s.renderer, 0, 3, 0).ok);
   CHECK(kReferenceView.samples(*s.side_by_side) == 0);
   s.refine(4, 0);
   const Vec3* shown = kReferenceView.picture(s.side_by_side, *s.renderer);
-  REQUIRE(prepare_frame(s.renderer, 0).ok);
+  REQUIRE(begin_frame(s.renderer, {0}).ok);
   CHECK(unlike_reference(s, Transport::model, shown) == 0);
   kReferenceView.forget(s.side_by_side);
   shown = kReferenceView.picture(s.side_by_side, *s.renderer);

@@ -19,8 +19,8 @@ struct MovedCamera {
   Camera camera;
   bool overridden;
   explicit MovedCamera(Renderer* moved)
-      : renderer(moved), camera(moved->camera), overridden(moved->camera_overridden) {}
-  ~MovedCamera() { renderer->camera = camera, renderer->camera_overridden = overridden; }
+      : renderer(moved), camera(moved->view.camera), overridden(moved->view.camera_overridden) {}
+  ~MovedCamera() { renderer->view.camera = camera, renderer->view.camera_overridden = overridden; }
 };
 
 }  // namespace
@@ -30,7 +30,7 @@ Status send_frames(Rig* rig, const Configuration& configuration, double seconds,
   CHECK_EQ(rig->part_pixels, 0u);
   Renderer* renderer = &rig->opened.renderer;
   RETURN_IF_ERROR(change_settings(renderer, configuration.settings));
-  RETURN_IF_ERROR(prepare_frame(renderer, seconds));  // returns the camera to the scene's
+  RETURN_IF_ERROR(begin_frame(renderer, {seconds}));  // returns the camera to the scene's
   const OutputFormat& output = kOutputFormats[configuration.output];
   const std::uint32_t width = renderer->settings.width, height = renderer->settings.height;
   RowStream stream;
@@ -39,7 +39,7 @@ Status send_frames(Rig* rig, const Configuration& configuration, double seconds,
                   &stream);
   const RowCoding coding = configuration.near_lossless ? RowCoding::near_lossless : RowCoding::lossless;
   const MovedCamera before(renderer);
-  const CameraControl path = make_camera_control(renderer->camera, renderer->accel.bounds);
+  const CameraControl path = make_camera_control(renderer->view.camera, renderer->accel.built.bounds);
   double bytes = 0;
   for (std::uint32_t left = kSentFrames; left-- > 0;) {
     const Camera turned = orbited_camera(path, static_cast<float>(-kSentOrbitDegrees * left));
@@ -47,7 +47,7 @@ Status send_frames(Rig* rig, const Configuration& configuration, double seconds,
     RETURN_IF_ERROR(render_frame(renderer, seconds, Aov::none, &interrupted));
     if (interrupted) return success();
     const std::vector<std::uint8_t> pixels =
-        packed_pixels(renderer->image.data, width, height, renderer->exposure, output);
+        packed_pixels(renderer->image.data, width, height, renderer->view.exposure, output);
     const std::size_t sent_bytes = send_picture(&stream, pixels.data(), coding);
     if (left + 1 < kSentFrames) bytes += static_cast<double>(sent_bytes);
   }
