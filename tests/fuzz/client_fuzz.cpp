@@ -279,7 +279,7 @@ void share_frames(FuzzInput* input, std::uint8_t flags, std::uint64_t latency_ns
       if (!o.has_scene && took > 500 * kMs) break;
       CHECK_LT(took, 20'000 * kMs);
     }
-    fuzz_counts.frames += has_all_rows(client), fuzz_counts.coarse += client.coarse_shown;
+    fuzz_counts.frames += has_all_rows(client), fuzz_counts.coarse += client.coarse.shown;
     fuzz_counts.lit += client.share.has_light, fuzz_counts.by_effect += client.share.by_effect;
     fuzz_counts.server_rows += client.share.server_rows[0];
     for (int i = 0; i < 4; ++i) advance_client(&client, 5 * kMs + latency_ns);

@@ -62,7 +62,7 @@ TEST_CASE("client_and_servers_trace_what_changes") {
     for (int i = 4; i < 12; ++i) {
       const FrameShare& share = rig.frame(7 + i / 30.0);
       device_pixels += share.device_pixels, rows += share.device_rows;
-      for (const RowModel& row : rig.client.model.rows)
+      for (const RowModel& row : rig.client.plan.model.rows)
         if (row.holder == 0) server_part += static_cast<double>(row.holder_part) / share.server_rows[0] / 8;
     }
     REQUIRE(rows > 0);
@@ -120,14 +120,14 @@ TEST_CASE("client_uses_a_server_that_came_during_short_frames") {
     if (i >= 50) during += share.measured_ns;
   }
   CHECK(during <= 1.05 * before);
-  REQUIRE(rig.client.servers[0].phase == ServerPhase::probing);
+  REQUIRE(rig.client.servers[0].overture.phase == ServerPhase::probing);
   Camera camera = rig.device->renderer.view.camera;
   int first_used = -1;
   for (int i = 0; i < 8; ++i) {
     camera.eye.x += 0.05f;
     REQUIRE(set_camera(&rig.device->renderer, camera).ok);
     const FrameShare& share = rig.frame(7.2);
-    const bool is_ready = rig.client.servers[0].phase == ServerPhase::ready;
+    const bool is_ready = rig.client.servers[0].overture.phase == ServerPhase::ready;
     if (first_used < 0 && is_ready && share.server_rows[0] > 0) first_used = i;
     rig.idle(10 * kMs);
   }

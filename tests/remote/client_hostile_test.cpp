@@ -59,7 +59,7 @@ TEST_CASE("client_leaves_a_server_that_floods") {
       rig.flood_with([&] { return flood.make(&rig); });
       for (int i = 0; i < 3; ++i) CHECK(rig.frame() < 1.05);
       CHECK(rig.flood_count < kFloodMessages);
-      CHECK(rig.client.servers[0].phase == ServerPhase::waiting);
+      CHECK(rig.client.servers[0].overture.phase == ServerPhase::waiting);
       CHECK(rig.log.size() == 1);
     }
 }
@@ -147,18 +147,18 @@ TEST_CASE("client_look_is_bounded") {
   for (int i = 0; i < 20; ++i) rig.frame();
   gives = true;
   RemoteServer* s = &rig.client.servers[0];
-  std::uint64_t owed = s->late_rows;
+  std::uint64_t owed = s->rows.late_rows;
   REQUIRE(owed > 4 * kHeight);
   REQUIRE(begin_frame(&rig.device->renderer, &rig.client, 0).ok);
-  std::uint32_t before = s->chunk_count, most = 0, looks = 0;
+  std::uint32_t before = s->rows.chunk_count, most = 0, looks = 0;
   std::uint64_t begin = rig.fake.now();
-  for (; s->late_rows > 0 && looks < 1000 && s->phase == ServerPhase::ready; ++looks) {
+  for (; s->rows.late_rows > 0 && looks < 1000 && s->overture.phase == ServerPhase::ready; ++looks) {
     advance_client(&rig.client, kMs);
-    most = std::max(most, s->chunk_count - before);
-    before = s->chunk_count;
+    most = std::max(most, s->rows.chunk_count - before);
+    before = s->rows.chunk_count;
   }
   CHECK(rig.log.empty());
-  CHECK(s->late_rows == 0);
+  CHECK(s->rows.late_rows == 0);
   CHECK(most <= kHeight);
   CHECK(looks >= owed / kHeight);
   CHECK(rig.fake.now() - begin < looks * kMs / 5);  // input already received is not waited for

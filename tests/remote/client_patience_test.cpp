@@ -136,14 +136,14 @@ TEST_CASE("client_goes_on_with_the_rows_a_server_sends_last") {
   client->options.device_share = 0.25;
   // The lower rows are dear to send, so that the order is not simply from the bottom upward.
   for (std::uint32_t row = 0; row < kHeight; ++row) {
-    client->model.rows[row].bytes = Smoothed();
-    smooth(&client->model.rows[row].bytes, row < 32 ? 4000.0 : 10.0);
+    client->plan.model.rows[row].bytes = Smoothed();
+    smooth(&client->plan.model.rows[row].bytes, row < 32 ? 4000.0 : 10.0);
   }
   std::vector<Message> none;
   rig.act = [&](HostileRig* r, const Message& message) { return r->note_request(message) ? none : r->answer(message); };
   REQUIRE(begin_frame(&rig.device->renderer, client, 0).ok);
   std::vector<std::uint32_t> expected, taken;
-  const FrameRequest asked = client->servers[0].asked;
+  const FrameRequest asked = client->servers[0].rows.asked;
   REQUIRE(asked.run_count > 1);
   REQUIRE(asked.row_begin == kHeight / 4);
   CHECK(first_rows(asked).row_end != asked.row_end);
@@ -172,7 +172,7 @@ TEST_CASE("client_waits_no_longer_for_rows_it_never_measured") {
   REQUIRE(take_device_rows(client, 2, &begin, &end));
   finish_device_rows(client, begin, end, 1000, (end - begin) * kWidth);
   const double left_ns = time_to_spare(*client, 0);
-  for (RowModel& row : client->model.rows)
+  for (RowModel& row : client->plan.model.rows)
     if (row.guessed) ++guesses, row.device_ns.value *= 100;
   CHECK_GT(guesses, kHeight / 2);
   CHECK(std::fabs(time_to_spare(*client, 0) - left_ns) < 1000);  // the clock goes on

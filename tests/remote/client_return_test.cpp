@@ -27,7 +27,7 @@ void next_frame(SplitRig* rig, int frame) {
 }
 
 double known_ns_per_byte(const SplitRig& rig, std::uint32_t server) {
-  return static_cast<double>(rig.client.model.servers[server].ns_per_byte.value);
+  return static_cast<double>(rig.client.plan.model.servers[server].ns_per_byte.value);
 }
 
 }  // namespace
@@ -62,8 +62,8 @@ TEST_CASE("client_measures_the_link_of_a_server_that_is_back") {
       rig.start_server(0);
       rig.idle(10 * kMs);
       std::uint64_t limit = rig.now() + 40'000 * kMs;
-      while (rig.client.servers[0].phase != ServerPhase::ready && rig.now() < limit) next_frame(&rig, frame++);
-      REQUIRE(rig.client.servers[0].phase == ServerPhase::ready);
+      while (rig.client.servers[0].overture.phase != ServerPhase::ready && rig.now() < limit) next_frame(&rig, frame++);
+      REQUIRE(rig.client.servers[0].overture.phase == ServerPhase::ready);
       for (int i = 0; i < kFrames; ++i) next_frame(&rig, frame++);
       std::printf("%u servers, %.0f ns per pixel here, %.0f there: of %.0f ns per byte", c.server_count, c.device_ns,
                   c.server_ns, kNsPerByte);

@@ -103,7 +103,7 @@ TEST_CASE("coarse_picture_is_shown_where_rows_are_missing") {
       o.client.has_scene = has_scene, o.client.coarse_after_ns = after_ns;
       SplitRig rig(o);
       for (int i = 0; i < 4; ++i) rig.frame(0.1 * i);
-      REQUIRE(rig.client.model.servers[0].connected);
+      REQUIRE(rig.client.plan.model.servers[0].connected);
       int shown = 0;
       for (int i = 4; i < 7; ++i) {
         const double seconds = 0.1 * i;
@@ -111,21 +111,21 @@ TEST_CASE("coarse_picture_is_shown_where_rows_are_missing") {
         FrameRequest q;
         q.settings = rig.client.settings, q.format = o.client.format;
         REQUIRE(begin_frame(&rig.device->renderer, &rig.client, seconds).ok);
-        CHECK(!rig.client.coarse_shown);
+        CHECK(!rig.client.coarse.shown);
         bool complete = false, was_shown = false;
         while (!complete) {
           complete = advance_frame(&rig.device->renderer, &rig.client, rig.now() + 2'000'000);
-          if (!rig.client.coarse_shown || was_shown || complete) continue;
+          if (!rig.client.coarse.shown || was_shown || complete) continue;
           was_shown = true;
-          CHECK(rig.client.merge.row_count_done < 30);
-          CHECK(rig.client.coarse_ns < 0.3 * rig.client.share.measured_ns);
+          CHECK(rig.client.picture.merge.row_count_done < 30);
+          CHECK(rig.client.coarse.ns < 0.3 * rig.client.share.measured_ns);
           const std::vector<std::uint8_t> squares = squares_of(right, q);
           const std::uint32_t columns = coarse_count(q.settings.width);
           int wrong = 0;
           for (std::uint32_t row = 0; row < q.settings.height; ++row)
             for (std::uint32_t x = 0; x < q.settings.width; ++x) {
               const std::uint8_t* pixel = merged_row(rig.client, row) + 3 * x;
-              const std::uint8_t* wanted = is_done(rig.client.merge.rows[row])
+              const std::uint8_t* wanted = is_done(rig.client.picture.merge.rows[row])
                                                ? &right[3 * (row * q.settings.width + x)]
                                                : &squares[3 * (row / kCoarseSide * columns + x / kCoarseSide)];
               wrong += !std::equal(pixel, pixel + 3, wanted);
@@ -134,7 +134,7 @@ TEST_CASE("coarse_picture_is_shown_where_rows_are_missing") {
           const FrameOutlook outlook = outlook_of(rig.client);
           CHECK(outlook.anew_ns < outlook.left_ns);
         }
-        CHECK(std::vector<std::uint8_t>(rig.client.pixels.begin(), rig.client.pixels.end()) == right);
+        CHECK(std::vector<std::uint8_t>(rig.client.picture.pixels.begin(), rig.client.picture.pixels.end()) == right);
         shown += was_shown;
       }
       CHECK(shown == (after_ns == 1.0 ? 3 : 0));
@@ -174,8 +174,9 @@ TEST_CASE("coarse_picture_that_is_not_due_ends_the_connection") {
     };
     for (int i = 0; i < 6 && rig.log.empty(); ++i) {
       rig.frame();
-      if (deviation == late) CHECK(!rig.client.coarse_shown);
-      CHECK(std::count(rig.client.pixels.begin(), rig.client.pixels.end(), 0x77) < int(rig.client.pixels.count) / 4);
+      if (deviation == late) CHECK(!rig.client.coarse.shown);
+      CHECK(std::count(rig.client.picture.pixels.begin(), rig.client.picture.pixels.end(), 0x77) <
+            int(rig.client.picture.pixels.count) / 4);
     }
     CHECK(asked > 0);
     CHECK(rig.log.empty() == (deviation == none || deviation == late));

@@ -92,8 +92,8 @@ TEST_CASE("code_cost_decides_how_rows_come") {
     SplitRig rig(o);
     mean_of(&rig);
     const RemoteServer& server = rig.client.servers[0];
-    CHECK((server.asked.coding == RowCoding::raw) == (pixel_ns > 1'000));
-    CHECK(static_cast<double>(rig.client.decode_ns.value) == doctest::Approx(pixel_ns).epsilon(0.01));
+    CHECK((server.rows.asked.coding == RowCoding::raw) == (pixel_ns > 1'000));
+    CHECK(static_cast<double>(rig.client.plan.decode_ns.value) == doctest::Approx(pixel_ns).epsilon(0.01));
   }
   Client unknown;
   CHECK(row_coding(59, code_threshold(unknown, unknown.servers[0]), false) == RowCoding::raw);

@@ -12,7 +12,7 @@ double best_frame_ns(const FaultPlan& plan, const Client& client) {
   p->row_count = plan.height, p->server_count = plan.server_count;
   double line_ns = plan.line.bytes_per_second > 0 ? 1e9 / static_cast<double>(plan.line.bytes_per_second) : 0;
   double bytes_sum = 0;
-  auto bytes = [&](std::uint32_t row) { return static_cast<double>(client.model.rows[row].bytes.value); };
+  auto bytes = [&](std::uint32_t row) { return static_cast<double>(client.plan.model.rows[row].bytes.value); };
   auto by_bytes = [&](double ns) {
     return make_table(&g, [&](std::uint32_t row) { return static_cast<std::uint64_t>(bytes(row) * ns); });
   };
@@ -31,7 +31,7 @@ double best_frame_ns(const FaultPlan& plan, const Client& client) {
   p->link_start_ns = start_ns;
   for (std::uint32_t i = 0; i < plan.server_count; ++i) {
     ServerTables* t = &p->servers[i];
-    t->usable = client.servers[i].phase == ServerPhase::ready;
+    t->usable = client.servers[i].overture.phase == ServerPhase::ready;
     t->render_ns = by_cost(plan.server_ns[i]);
     t->transfer_ns = by_bytes(line_ns);
     t->cost = by_bytes(1);

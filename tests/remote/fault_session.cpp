@@ -41,7 +41,7 @@ std::string fail(const FaultWorld& w, const std::string& what, double value = 0)
 std::string phases(const FaultWorld& w) {
   std::string text;
   for (std::uint32_t i = 0; i < w.plan.server_count; ++i)
-    text += std::string(i ? ", " : "") + phase_text(w.client.servers[i].phase);
+    text += std::string(i ? ", " : "") + phase_text(w.client.servers[i].overture.phase);
   for (const std::string& line : w.log) text += "\n    " + line;
   return text;
 }
@@ -50,14 +50,14 @@ std::string phases(const FaultWorld& w) {
 // its own light; or any that servers send, which never takes light away.
 bool is_right(const FaultWorld& w, int second) {
   const std::vector<std::uint8_t>& expected = device_picture(w.plan, second);
-  const Array<std::uint8_t>& pixels = w.client.pixels;
+  const Array<std::uint8_t>& pixels = w.client.picture.pixels;
   const FrameShare& share = w.client.share;
   if (!share.by_effect) return std::equal(pixels.begin(), pixels.end(), expected.begin(), expected.end());
   const std::vector<std::uint8_t>&own = device_picture(w.plan, second, Lighting::own),
         &direct = device_picture(w.plan, second, Lighting::direct);
   const std::size_t row_bytes = pixels.count / w.plan.height;
   for (std::uint32_t row = 0; row < w.plan.height; ++row) {
-    const MergeRow& merged = w.client.merge.rows[row];
+    const MergeRow& merged = w.client.picture.merge.rows[row];
     const std::size_t begin = row * row_bytes;
     auto equals = [&](const std::vector<std::uint8_t>& right) {
       return std::equal(pixels.begin() + begin, pixels.begin() + begin + row_bytes,
@@ -81,7 +81,7 @@ bool is_left_dark(const FaultWorld& w) {
   if (plan.split != SplitKind::effect || w.peace || w.faults_struck > 0 || plan.neighbour_count > 0) return false;
   if (w.elapsed() - w.lit_ns < kUnlitNsMax + 40 * plan.line.latency_ns + 4 * w.local_ns) return false;
   for (std::uint32_t i = 0; i < plan.server_count; ++i) {
-    bool is_good = plan.malice[i] == Malice::none && w.client.servers[i].phase >= ServerPhase::probing;
+    bool is_good = plan.malice[i] == Malice::none && w.client.servers[i].overture.phase >= ServerPhase::probing;
     for (int k = 0; k < plan.event_count; ++k) is_good = is_good && plan.events[k].server != i;
     if (is_good) return true;
   }
@@ -100,8 +100,8 @@ std::string check_lies(const FaultWorld& w, SessionResult* result) {
   result->lies += static_cast<int>(w.client.share.lies);
   for (std::uint32_t i = 0; i < w.plan.server_count; ++i) {
     const RemoteServer& s = w.client.servers[i];
-    if (s.lied && w.plan.malice[i] == Malice::none) return fail(w, "an honest server is taken for a liar");
-    if (s.lied && (s.phase != ServerPhase::waiting || w.client.share.server_rows[i] > 0))
+    if (s.overture.lied && w.plan.malice[i] == Malice::none) return fail(w, "an honest server is taken for a liar");
+    if (s.overture.lied && (s.overture.phase != ServerPhase::waiting || w.client.share.server_rows[i] > 0))
       return fail(w, "a liar is used again");
   }
   return "";
@@ -135,7 +135,7 @@ std::string run_frame(FaultWorld* w, SessionResult* result) {
   auto keeps = [](const RowModel& row) { return row.holder != kNoHolder && row.holder_part < 1; };
   result->unchanged += w->client.share.unchanged;
   result->device_kept += !state.whole_because && state.pixels_traced < plan.width * w->client.share.device_rows;
-  result->server_kept += std::any_of(w->client.model.rows.begin(), w->client.model.rows.end(), keeps);
+  result->server_kept += std::any_of(w->client.plan.model.rows.begin(), w->client.plan.model.rows.end(), keeps);
   bool lies = w->client.share.lies > 0;
   double* worst = calm ? &result->worst_calm : &result->worst_disturbed;
   if (!lies && !share.by_effect) *worst = std::max(*worst, ratio);
@@ -164,7 +164,7 @@ std::string run_thin_frame(FaultWorld* w, SessionResult* result) {
   std::uint32_t rows = 0;
   while (!advance_frame(renderer, c, client_now_ns(*c) + 20 * kMs, nullptr)) {
     if (w->stuck) return fail(*w, "a server holds the device");
-    if (c->merge.row_count_done != rows) rows = c->merge.row_count_done, rows_come_ns = w->elapsed();
+    if (c->picture.merge.row_count_done != rows) rows = c->picture.merge.row_count_done, rows_come_ns = w->elapsed();
     if (is_cut_off(*c)) break;
     if (w->elapsed() - rows_come_ns > kCutOffNsMax + w->lost_ns) return fail(*w, "never gives up: " + phases(*w));
   }
@@ -193,8 +193,8 @@ void let_client_rest(FaultWorld* w, std::uint64_t ns) {
 // its rows come too late.
 bool is_back(const FaultWorld& w, std::uint32_t i) {
   const FaultPlan& plan = w.plan;
-  if (w.client.servers[i].lied) return true;  // it stays out
-  ServerPhase phase = w.client.servers[i].phase;
+  if (w.client.servers[i].overture.lied) return true;  // it stays out
+  ServerPhase phase = w.client.servers[i].overture.phase;
   if (plan.split == SplitKind::effect) return phase >= ServerPhase::probing;  // of several, one is asked for light
   double rows_ns = 2 * static_cast<double>(plan.line.latency_ns + plan.line.jitter_ns) +
                    plan.server_count * (4 * plan.server_ns[i] * dearest_row(plan) + 2e6);
@@ -216,7 +216,7 @@ std::string check_log(const FaultWorld& w, SessionResult* result) {
     }
     // Without the scene, some servers get no rows of a small picture and are not in use.
     bool used = w.plan.has_scene || w.client.share.server_rows[i] > 0;
-    if (lost && used && w.client.servers[i].phase == ServerPhase::ready)
+    if (lost && used && w.client.servers[i].overture.phase == ServerPhase::ready)
       return fail(w, "a server that is back is not reported so");
   }
   return "";

@@ -107,7 +107,7 @@ struct Device {
   }
   ~Device() { close_client(&client); }
 
-  bool is_ready() const { return client.servers[0].phase == ServerPhase::ready; }
+  bool is_ready() const { return client.servers[0].overture.phase == ServerPhase::ready; }
 
   // A frame, compared with the device's own.
   void frame() {
@@ -117,7 +117,7 @@ struct Device {
     std::vector<std::uint8_t>& expected = pictures[second];
     if (expected.empty()) {
       REQUIRE(render_frame(own, 0.3 * second).ok);
-      expected.resize(client.pixels.count);
+      expected.resize(client.picture.pixels.count);
       pack_rows(own->image.data, kWidth, kHeight, 0, kHeight, own->view.exposure, kRgb888, Rotation::none, false,
                 expected.data(), kWidth * 3);
     }
@@ -126,7 +126,7 @@ struct Device {
     REQUIRE(render_frame(own, &client, 0.3 * second, nullptr, &complete).ok);
     worst_ns = std::max(worst_ns, static_cast<double>(wall_ns() - begin));
     if (!complete) failure = "a frame is not complete";
-    if (!std::equal(expected.begin(), expected.end(), client.pixels.begin()))
+    if (!std::equal(expected.begin(), expected.end(), client.picture.pixels.begin()))
       failure = "a frame is not the device's own";
   }
   void pause(std::uint64_t ns) {
@@ -308,12 +308,13 @@ TEST_CASE("faults_over_sockets_reconnects_leave_nothing_behind") {
   for (int i = 0; i < (is_thorough() ? 10'000 : effort(300)); ++i) {
     RemoteServer* s = &device.client.servers[0];
     close_message_stream(&s->messages);  // like a radio switched off
-    s->phase = ServerPhase::waiting;
-    s->retry_ns = 0;
-    s->timer = platform::link_timer(client_now_ns(device.client), 0);
-    for (std::uint64_t begin = wall_ns(); s->phase < ServerPhase::measuring && wall_ns() - begin < 10'000 * kMs;)
+    s->overture.phase = ServerPhase::waiting;
+    s->overture.retry_ns = 0;
+    s->overture.timer = platform::link_timer(client_now_ns(device.client), 0);
+    for (std::uint64_t begin = wall_ns();
+         s->overture.phase < ServerPhase::measuring && wall_ns() - begin < 10'000 * kMs;)
       advance_client(&device.client, kMs);
-    if (s->phase < ServerPhase::measuring) FAIL("connection " << i << " does not come about");
+    if (s->overture.phase < ServerPhase::measuring) FAIL("connection " << i << " does not come about");
   }
   CHECK(descriptor() == before);
   CHECK(device.frames_until([&] { return device.is_ready(); }));

@@ -88,7 +88,7 @@ struct HostileRig {
     return true;
   }
 
-  bool is_ready() const { return client.servers[0].phase == ServerPhase::ready; }
+  bool is_ready() const { return client.servers[0].overture.phase == ServerPhase::ready; }
   // Renders a frame; returns its time relative to the device's alone.
   double frame() {
     std::uint64_t begin = fake.now();

@@ -99,7 +99,7 @@ TEST_CASE("light_that_is_overdue_drops_the_server") {
   CHECK(first_ns > 29 * kSecondNs);
   CHECK(first_ns < 33 * kSecondNs);
   CHECK(!rig.client.share.has_light);
-  CHECK(rig.client.servers[0].light_missed >= 1);
+  CHECK(rig.client.servers[0].light.missed >= 1);
   for (int i = 0; i < 30; ++i) {
     turn(&rig.device->renderer, 1);
     CHECK(rig.frame() < 2.2);
@@ -203,7 +203,7 @@ TEST_CASE("light_comes_from_the_next_server") {
         CHECK(frame(i % 5));
         CHECK(world.client.share.light_age <= 2);
       }
-      CHECK(world.client.servers[bad].phase >= ServerPhase::probing);
+      CHECK(world.client.servers[bad].overture.phase >= ServerPhase::probing);
       CHECK(world.log.size() <= 1);
       close_client(&world.client);
       close_fault_world(&world);
@@ -218,7 +218,7 @@ TEST_CASE("light_of_one_server_keeps_the_other_connected") {
   open_fault_world(plan, &world);
   for (int i = 0; world.elapsed() < 5 * kServerIdleNs; ++i)
     REQUIRE(render_frame(device_renderer(plan), &world.client, kFaultSeconds[i % 2]).ok);
-  for (std::uint32_t i = 0; i < 2; ++i) CHECK(world.client.servers[i].phase >= ServerPhase::probing);
+  for (std::uint32_t i = 0; i < 2; ++i) CHECK(world.client.servers[i].overture.phase >= ServerPhase::probing);
   CHECK(world.log.empty());
   close_client(&world.client);
   close_fault_world(&world);
@@ -237,7 +237,7 @@ TEST_CASE("light_is_tried_beside_a_server_that_never_gets_ready") {
     turn(&rig.device->renderer, 1);
     by_effect += rig.frame(0).by_effect;
   }
-  CHECK(rig.client.servers[0].phase == ServerPhase::probing);
-  CHECK(rig.client.servers[1].phase == ServerPhase::ready);
+  CHECK(rig.client.servers[0].overture.phase == ServerPhase::probing);
+  CHECK(rig.client.servers[1].overture.phase == ServerPhase::ready);
   CHECK(by_effect >= int(kTrialFrames));
 }

@@ -33,7 +33,7 @@ inline double mean_error(const std::vector<std::uint8_t>& a, const std::vector<s
 }
 
 inline std::vector<std::uint8_t> pixels_of(const Client& client) {
-  return {client.pixels.begin(), client.pixels.end()};
+  return {client.picture.pixels.begin(), client.picture.pixels.end()};
 }
 
 // The device's frame with its own indirect light.

@@ -72,10 +72,10 @@ TEST_CASE("effect_split_automatic_shares_rows_too") {
   const std::size_t row_bytes = right.size() / 72;
   double off = 0, off_ambient = 0;
   for (std::uint32_t row = 0; row < 72; ++row) {
-    const bool is_server_s = both.client.merge.rows[row].state == RowState::server;
+    const bool is_server_s = both.client.picture.merge.rows[row].state == RowState::server;
     for (std::size_t i = row * row_bytes; i < (row + 1) * row_bytes; ++i) {
-      if (is_server_s) REQUIRE(both.client.pixels[i] == right[i]);
-      off += std::abs(int(both.client.pixels[i]) - int(right[i]));
+      if (is_server_s) REQUIRE(both.client.picture.pixels[i] == right[i]);
+      off += std::abs(int(both.client.picture.pixels[i]) - int(right[i]));
       if (!is_server_s) off_ambient += std::abs(int(ambient[i]) - int(right[i]));
     }
   }

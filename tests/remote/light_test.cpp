@@ -314,7 +314,7 @@ TEST_CASE("light_map_of_a_frame_given_up_is_not_used") {
   CHECK(asked == 3);
   CHECK(rig.client.share.light_age == 2);
   CHECK(rig.client.share.light_bytes > 0);
-  CHECK(rig.client.servers[0].light_due == 1);
+  CHECK(rig.client.servers[0].light.due == 1);
   CHECK(mean_error(pixels_of(rig.client), lit) < 16);
   CHECK(rig.log.empty());
 }

@@ -31,7 +31,7 @@ SplitRigOptions slow_link(std::uint32_t server_count, WireFormat format, bool ne
 // Largest difference of a channel in levels.
 int largest_difference(const SplitRig& rig, const std::vector<std::uint8_t>& right) {
   const bool is_565 = rig.client.options.format == WireFormat::rgb565;
-  const std::uint8_t* shown = rig.client.pixels.data;
+  const std::uint8_t* shown = rig.client.picture.pixels.data;
   int largest = 0;
   for (std::size_t i = 0; i < right.size(); i += is_565 ? 2 : 3)
     for (int c = 0; c < 3; ++c) {
@@ -62,7 +62,7 @@ TEST_CASE("near_lossless_frames_are_off_by_at_most_a_level") {
       }
       CHECK(largest == (near_lossless ? 1 : 0));
       CHECK(rig.client.servers[0].checks.checked > 0);
-      CHECK(!rig.client.servers[0].lied);
+      CHECK(!rig.client.servers[0].overture.lied);
       CHECK(rig.log.empty());
     }
     CHECK(10 * bytes[true] < 9 * bytes[false]);
@@ -73,10 +73,10 @@ TEST_CASE("near_lossless_frames_are_off_by_at_most_a_level") {
 TEST_CASE("near_lossless_rows_of_a_liar_are_found") {
   SplitRig rig(slow_link(2, WireFormat::rgb888, true));
   make_liar(&rig.world, 1, [](std::uint32_t, std::uint32_t, std::uint32_t) { return true; });
-  for (int i = 0; i < 8 && !rig.client.servers[1].lied; ++i) rig.frame(0.04 * i);
+  for (int i = 0; i < 8 && !rig.client.servers[1].overture.lied; ++i) rig.frame(0.04 * i);
   forget_lies();
-  CHECK(rig.client.servers[1].lied);
-  CHECK(!rig.client.servers[0].lied);
+  CHECK(rig.client.servers[1].overture.lied);
+  CHECK(!rig.client.servers[0].overture.lied);
 }
 
 // Goal: a device without the scene accuses none of several honest servers, of which two may differ by two levels.

@@ -46,8 +46,9 @@ TEST_CASE("preparation_begins_once_rows_are_requested") {
     double seconds = settle(&rig);
     const FrameShare& share = rig.frame(seconds += kFrameSeconds);
     CHECK((share.device_rows > 0 && share.device_rows < options.height / 2));
-    CHECK(rig.client.prepared);
-    CHECK(static_cast<double>(rig.client.servers[0].frame.asked_ns - rig.client.begin_ns) < 0.01 * kMillisecond);
+    CHECK(rig.client.frame.prepared);
+    CHECK(static_cast<double>(rig.client.servers[0].rows.frame.asked_ns - rig.client.frame.begin_ns) <
+          0.01 * kMillisecond);
     CHECK(std::fabs(share.predicted_ns - share.measured_ns) < 0.1 * share.measured_ns);
     times[prepare_ms] = share.measured_ns;
   }
@@ -59,7 +60,7 @@ TEST_CASE("preparation_begins_once_rows_are_requested") {
   const std::uint64_t begin_ns = rig.now();
   const double measured_ns = rig.frame(seconds).measured_ns;  // from the first moment to the last
   CHECK(std::fabs(static_cast<double>(rig.now() - begin_ns) - measured_ns) < 0.1 * kMillisecond);
-  CHECK(static_cast<double>(rig.client.servers[0].frame.asked_ns - rig.client.begin_ns) >= 1 * kMillisecond);
+  CHECK(static_cast<double>(rig.client.servers[0].rows.frame.asked_ns - rig.client.frame.begin_ns) >= 1 * kMillisecond);
 }
 
 // Goal: a device that renders no row prepares nothing, and takes no time for it; once it must render or check, it
@@ -71,25 +72,25 @@ TEST_CASE("preparation_is_left_out_where_servers_render_all") {
   double seconds = settle(&rig);
   for (int i = 0; i < 4; ++i) {
     const FrameShare& share = rig.frame(seconds += kFrameSeconds);
-    CHECK(!rig.client.prepared);
+    CHECK(!rig.client.frame.prepared);
     CHECK(share.device_rows == 0);
     CHECK(share.measured_ns < 0.1 * kPrepareMs * kMillisecond);
     CHECK(std::fabs(share.predicted_ns - share.measured_ns) < 0.1 * share.measured_ns);
     CHECK(share.local_ns > kPrepareMs * kMillisecond);
   }
-  CHECK(static_cast<double>(rig.client.model.device_start_ns.value) == doctest::Approx(kPrepareMs * kMillisecond));
+  CHECK(static_cast<double>(rig.client.plan.model.device_start_ns.value) == doctest::Approx(kPrepareMs * kMillisecond));
 
   rig.client.verifier.check_count = 2;
   CHECK(rig.frame(seconds += kFrameSeconds).checked[0] == 2);
-  CHECK(rig.client.prepared);
+  CHECK(rig.client.frame.prepared);
   CHECK(rig.client.share.device_rows == 0);
   rig.client.verifier.check_count = 0;
   rig.frame(seconds += kFrameSeconds);
-  CHECK(!rig.client.prepared);
+  CHECK(!rig.client.frame.prepared);
 
   rig.stop_server(0);
   CHECK(rig.frame(seconds += kFrameSeconds).device_rows == rig.options.height);
-  CHECK(rig.client.prepared);
+  CHECK(rig.client.frame.prepared);
 }
 
 // Goal: what preparation takes counts towards the 1 % of the time that automatic checks may take. Method: frames of
@@ -103,7 +104,7 @@ TEST_CASE("preparation_for_checks_takes_a_hundredth") {
   for (int i = 0; i < effort(2000); ++i) {
     const FrameShare& share = rig.frame(seconds += kFrameSeconds);
     all += share.measured_ns;
-    prepared += rig.client.prepared ? 20 * kMillisecond : 0;
+    prepared += rig.client.frame.prepared ? 20 * kMillisecond : 0;
     checks += share.checked[0];
   }
   CHECK(prepared < 0.02 * all + 20 * kMillisecond);
@@ -140,16 +141,16 @@ TEST_CASE("preparation_left_out_keeps_no_picture") {
   moved.eye = 1.1f * camera.eye;
   REQUIRE(set_camera(renderer, camera).ok);
   const double seconds = settle(&rig, 40);
-  REQUIRE((rig.client.joined && rig.client.prepared));
+  REQUIRE((rig.client.frame.joined && rig.client.frame.prepared));
   REQUIRE(set_camera(renderer, moved).ok);
   rig.client.options.device_share = 0;  // servers render all
   rig.client.options.device_goes_on = false;
   rig.frame(seconds + kFrameSeconds);
   rig.frame(seconds + duration);
-  CHECK(!rig.client.prepared);
+  CHECK(!rig.client.frame.prepared);
   REQUIRE(set_camera(renderer, camera).ok);
   CHECK(!rig.frame(seconds + duration).unchanged);  // and its pixels are right
-  CHECK(rig.client.prepared);
+  CHECK(rig.client.frame.prepared);
 }
 
 // Goal: the model's start of each server includes its preparation, also where several share a link, whether it keeps up
@@ -174,7 +175,7 @@ TEST_CASE("preparation_of_servers_is_in_their_start") {
     double seconds = settle(&rig, 40);
     for (std::uint32_t i = 0; i < count; ++i) {
       CAPTURE(i);
-      const double start_ns = static_cast<double>(rig.client.model.servers[i].start_ns.value);
+      const double start_ns = static_cast<double>(rig.client.plan.model.servers[i].start_ns.value);
       CHECK(start_ns == doctest::Approx(4 * kMillisecond).epsilon(0.3));
     }
     const FrameShare& share = rig.frame(seconds += kFrameSeconds);

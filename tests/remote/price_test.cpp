@@ -45,7 +45,7 @@ struct SharedServer {
   void step();
   // The mean device's rows of the last frames of `seconds`; every frame has the pixels that the device would render.
   double device_rows_after(double seconds);
-  double price() const { return static_cast<double>(client.model.servers[0].price_stated); }
+  double price() const { return static_cast<double>(client.plan.model.servers[0].price_stated); }
 };
 SharedServer* shared = nullptr;
 
@@ -120,10 +120,10 @@ double SharedServer::device_rows_after(double seconds) {
   while (rig.now() < begin + ns) {
     REQUIRE(render_frame(&device->renderer, &client, 0).ok);
     REQUIRE(render_frame(&whole->renderer, 0).ok);
-    std::vector<std::uint8_t> alone(client.pixels.count);
+    std::vector<std::uint8_t> alone(client.picture.pixels.count);
     pack_rows(whole->renderer.image.data, 64, 48, 0, 48, whole->renderer.view.exposure, kRgb888, Rotation::none, false,
               alone.data(), 64 * 3);
-    CHECK(std::equal(alone.begin(), alone.end(), client.pixels.begin()));
+    CHECK(std::equal(alone.begin(), alone.end(), client.picture.pixels.begin()));
     if (rig.now() < begin + ns * 3 / 4) continue;
     rows += client.share.device_rows, ++count;
   }
@@ -243,7 +243,7 @@ TEST_CASE("price_that_is_a_lie_costs_at_most_the_device_s_time") {
     };
     for (int i = 0; i < 40; ++i) CHECK(rig.frame() < 1.05);
     CHECK(rig.all.size() > 1);
-    CHECK(rig.client.model.servers[0].price <= kPriceMax);
+    CHECK(rig.client.plan.model.servers[0].price <= kPriceMax);
     CHECK((rig.log.empty() || lie == cheap_but_slow));
   }
 }
@@ -258,7 +258,7 @@ TEST_CASE("price_out_of_range_ends_the_connection") {
     rig.fake.flood = [&]() -> std::vector<std::uint8_t> {
       if (sent) return {};
       sent = true;
-      std::vector<std::uint8_t> bytes = bytes_of(rig.pong({rig.client.servers[0].ping_id, 0}));
+      std::vector<std::uint8_t> bytes = bytes_of(rig.pong({rig.client.servers[0].link.ping_id, 0}));
       bytes[16] = static_cast<std::uint8_t>(price), bytes[17] = 0;
       const uLong crc = crc32(crc32(0, bytes.data(), 4), bytes.data() + 8, static_cast<uInt>(bytes.size() - 8));
       for (std::uint32_t i = 0; i < 4; ++i) bytes[4 + i] = static_cast<std::uint8_t>(crc >> 8 * i);

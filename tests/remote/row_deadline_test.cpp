@@ -49,8 +49,8 @@ struct Slices {
   }
 
   bool is_within_row() const {
-    const DeviceRow& row = rig->client.device_row;
-    return !rig->client.complete && row.in_parts && row.columns_done > 0;
+    const DeviceRow& row = rig->client.frame.device_row;
+    return !rig->client.frame.complete && row.in_parts && row.columns_done > 0;
   }
 
   // False: the frame was not complete in time.
@@ -63,12 +63,12 @@ struct Slices {
   void check(double seconds) {
     const std::uint32_t width = rig->options.width;
     if (!counts) {
-      std::vector<std::uint8_t> merged(rig->client.pixels.begin(), rig->client.pixels.end());
+      std::vector<std::uint8_t> merged(rig->client.picture.pixels.begin(), rig->client.picture.pixels.end());
       CHECK(merged == rig->local_pixels(seconds));
       return;
     }
     for (std::size_t i = 0; i < traced.size(); ++i) {
-      const bool is_devices = rig->client.merge.rows[i / width].state == RowState::device;
+      const bool is_devices = rig->client.picture.merge.rows[i / width].state == RowState::device;
       CAPTURE(i);
       CHECK(traced[i] <= 1);
       if (is_devices && rig->options.coherence == CoherenceMode::off) CHECK(traced[i] == 1);

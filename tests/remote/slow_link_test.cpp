@@ -46,7 +46,7 @@ TEST_CASE("client_measures_a_slow_link_that_servers_share") {
     rig.frame(0.1 * i);
     CAPTURE(i);
     CHECK(is_settled(rig.client));
-    const CostModel& model = rig.client.model;
+    const CostModel& model = rig.client.plan.model;
     CHECK(static_cast<double>(model.link_ns_per_byte.value) > 0.9 * kNsPerByte);
     CHECK(static_cast<double>(model.link_ns_per_byte.value) < 1.6 * kNsPerByte);
     for (std::uint32_t s = 0; s < 3; ++s)
@@ -63,7 +63,7 @@ TEST_CASE("client_start_is_measured_while_the_device_is_at_work") {
   rig.client.options.device_share = 1;
   for (int i = 0; i < 12; ++i) rig.frame(0.3 + 0.1 * i);
   for (std::uint32_t s = 0; s < 3; ++s)
-    CHECK(static_cast<double>(rig.client.model.servers[s].start_ns.value) < 8 * kLatencyNs);
+    CHECK(static_cast<double>(rig.client.plan.model.servers[s].start_ns.value) < 8 * kLatencyNs);
   rig.client.options.device_share = -1;
   CHECK(rig.frame(2).device_rows == 0);
 }
@@ -74,14 +74,14 @@ TEST_CASE("client_start_is_bounded_by_the_first_rows") {
   SplitRig rig(tablet());
   for (int i = 0; i < 4; ++i) rig.frame(0.1 * i);
   RemoteServer* server = &rig.client.servers[0];
-  REQUIRE(server->phase == ServerPhase::ready);
-  Smoothed* start = &rig.client.model.servers[0].start_ns;
+  REQUIRE(server->overture.phase == ServerPhase::ready);
+  Smoothed* start = &rig.client.plan.model.servers[0].start_ns;
   *start = Smoothed(), start->value = static_cast<float>(kTooLongNs);
-  server->round_trip_ns = kTooLongNs;
+  server->link.round_trip_ns = kTooLongNs;
   for (int i = 4; i < 10; ++i) rig.frame(0.1 * i);
   CHECK(static_cast<double>(start->value) < kTooLongNs / 3);
   CHECK(static_cast<double>(start->value) > 2e6);
-  CHECK(server->round_trip_ns < kTooLongNs / 2);
+  CHECK(server->link.round_trip_ns < kTooLongNs / 2);
 }
 
 // Goal: of two servers that start alike, the one whose answers once came sooner does not get more rows for it, where
@@ -92,8 +92,8 @@ TEST_CASE("client_start_is_bounded_by_the_last_rows") {
   SplitRig rig(options);
   for (int i = 0; i < 12; ++i) rig.frame(0.1 * i);
   REQUIRE(is_settled(rig.client));
-  const Smoothed* other = &rig.client.model.servers[0].start_ns;
-  Smoothed* start = &rig.client.model.servers[1].start_ns;
+  const Smoothed* other = &rig.client.plan.model.servers[0].start_ns;
+  Smoothed* start = &rig.client.plan.model.servers[1].start_ns;
   *start = Smoothed(), start->value = 1e5f;
   for (int i = 12; i < 24; ++i) rig.frame(0.1 * i);
   CHECK(static_cast<double>(start->value) > 0.7 * static_cast<double>(other->value));
@@ -106,12 +106,12 @@ TEST_CASE("client_link_measured_again_keeps_its_limits") {
   SplitRig rig(tablet());
   for (int i = 0; i < 4; ++i) rig.frame(0.1 * i);
   RemoteServer* server = &rig.client.servers[0];
-  REQUIRE(server->phase == ServerPhase::ready);
+  REQUIRE(server->overture.phase == ServerPhase::ready);
   for (int round = 0; round < 4; ++round) {
-    server->round_trip_ns = kTooLongNs, server->scaled = kUnsound;
+    server->link.round_trip_ns = kTooLongNs, server->link.scaled = kUnsound;
     for (int i = 0; i < 12; ++i) {
       rig.frame(1 + round + 0.02 * i);
-      const double ns_per_byte = static_cast<double>(rig.client.model.servers[0].ns_per_byte.value);
+      const double ns_per_byte = static_cast<double>(rig.client.plan.model.servers[0].ns_per_byte.value);
       REQUIRE(ns_per_byte > kTabletNsPerByte / 2);
       REQUIRE(ns_per_byte < 3 * kTabletNsPerByte);
       rig.idle(500'000'000);
@@ -140,7 +140,7 @@ TEST_CASE("slow_link_is_not_what_servers_do_one_after_another") {
       camera.eye = home.eye + 0.01f * static_cast<float>(frame % 10) * cross(home.target - home.eye, home.up);
       REQUIRE(set_camera(&rig.device->renderer, camera).ok);
       rig.frame(0);
-      for (const ServerModel& server : rig.client.model.servers)
+      for (const ServerModel& server : rig.client.plan.model.servers)
         worst = std::max(worst, static_cast<double>(server.ns_per_byte.value));
     }
   }
@@ -171,9 +171,9 @@ TEST_CASE("slow_link_is_rarely_assumed_to_be_faster") {
     REQUIRE(set_camera(renderer, camera).ok);
     rig.frame(0);
     if (frame < 96) continue;
-    limited += rig.client.link_trial.limited;
-    trials += rig.client.link_trial.before > 0;
-    fastest = std::min(fastest, static_cast<double>(rig.client.model.link_ns_per_byte.value));
+    limited += rig.client.plan.link_trial.limited;
+    trials += rig.client.plan.link_trial.before > 0;
+    fastest = std::min(fastest, static_cast<double>(rig.client.plan.model.link_ns_per_byte.value));
   }
   CHECK(limited >= 60);
   CHECK(trials <= 12);

@@ -56,7 +56,7 @@ std::vector<std::uint8_t> SplitRig::local_pixels(double seconds) {
   renderer.view.camera_index = device->renderer.view.camera_index,
   renderer.view.exposure = device->renderer.view.exposure;
   REQUIRE(render_frame(&renderer, seconds).ok);
-  std::vector<std::uint8_t> pixels(client.pixels.count);
+  std::vector<std::uint8_t> pixels(client.picture.pixels.count);
   int width = static_cast<int>(options.width), height = static_cast<int>(options.height);
   bool small = options.client.format == WireFormat::rgb565;
   pack_rows(renderer.image.data, width, height, 0, height, renderer.view.exposure, small ? kRgb565 : kRgb888,
@@ -67,7 +67,7 @@ std::vector<std::uint8_t> SplitRig::local_pixels(double seconds) {
 const FrameShare& SplitRig::frame(double seconds) {
   REQUIRE(render_frame(&device->renderer, &client, seconds).ok);
   if (!options.compares) return client.share;
-  std::vector<std::uint8_t> merged(client.pixels.begin(), client.pixels.end());
+  std::vector<std::uint8_t> merged(client.picture.pixels.begin(), client.picture.pixels.end());
   CHECK(merged == local_pixels(seconds));
   return client.share;
 }

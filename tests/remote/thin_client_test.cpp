@@ -21,9 +21,9 @@ SplitRigOptions thin(std::uint32_t server_count) {
 void begin_frame(SplitRig* rig, double seconds) {
   REQUIRE(begin_frame(&rig->device->renderer, &rig->client, seconds).ok);
   std::uint64_t limit = rig->now() + 1000 * kMs;
-  while (rig->client.merge.row_count_done == 0 && rig->now() < limit)
+  while (rig->client.picture.merge.row_count_done == 0 && rig->now() < limit)
     advance_frame(&rig->device->renderer, &rig->client, rig->now() + kMs / 10);
-  REQUIRE(rig->client.merge.row_count_done > 0);
+  REQUIRE(rig->client.picture.merge.row_count_done > 0);
   REQUIRE(!has_all_rows(rig->client));
 }
 
@@ -33,7 +33,7 @@ bool advance(SplitRig* rig, std::uint64_t ns) {
 
 // Checks that the merged pixels equal those the device would have rendered.
 void check_pixels(SplitRig* rig, double seconds) {
-  std::vector<std::uint8_t> merged(rig->client.pixels.begin(), rig->client.pixels.end());
+  std::vector<std::uint8_t> merged(rig->client.picture.pixels.begin(), rig->client.picture.pixels.end());
   CHECK(merged == rig->local_pixels(seconds));
 }
 

@@ -38,7 +38,7 @@ struct LiarRig {
   // True if the frame equals that of the device alone.
   bool shows_truth(double seconds) {
     rig.frame(seconds);
-    std::vector<std::uint8_t> shown(rig.client.pixels.begin(), rig.client.pixels.end());
+    std::vector<std::uint8_t> shown(rig.client.picture.pixels.begin(), rig.client.picture.pixels.end());
     return shown == rig.local_pixels(seconds);
   }
   std::uint32_t rows_of(std::uint32_t i) { return rig.client.share.server_rows[i]; }
@@ -83,12 +83,12 @@ TEST_CASE("verify_drops_a_liar_and_shows_the_truth") {
       make_liar(&own.rig.world, 1, kind.lie);
       bool all_wrong = kind.frames_max <= 6, truth = true;
       int frame = 0;
-      for (; frame < kind.frames_max && !own.server(1).lied; ++frame) {
+      for (; frame < kind.frames_max && !own.server(1).overture.lied; ++frame) {
         truth = own.shows_truth(0.05 * frame);
         CHECK((truth || !all_wrong));
         own.rig.idle(600'000'000);
       }
-      REQUIRE(own.server(1).lied);
+      REQUIRE(own.server(1).overture.lied);
       CHECK(truth);  // the frame in which it was found
       CHECK(lies_told() > 0);
       CHECK(own.lines("sent wrong pixels and is no longer used: frame") == 1);
@@ -99,7 +99,7 @@ TEST_CASE("verify_drops_a_liar_and_shows_the_truth") {
         own.rig.idle(8'000'000'000);  // longer than the first retries after a loss
       }
       CHECK(own.rows_of(0) > 0);
-      CHECK(!own.server(0).lied);
+      CHECK(!own.server(0).overture.lied);
       CHECK(own.rig.log.size() == 1);
     }
 }
@@ -116,12 +116,12 @@ TEST_CASE("verify_asks_others_anew_within_the_frame") {
   REQUIRE(end > begin + 8);
   make_liar(&own.rig.world, 1, kKinds[0].lie);
   CHECK(own.shows_truth(1));
-  REQUIRE(own.server(1).lied);
+  REQUIRE(own.server(1).overture.lied);
   CHECK(own.rig.client.share.lies == 1);
   CHECK(own.rows_of(1) == 0);
   std::uint32_t taken_over = 0;
   for (std::uint32_t row = begin; row < end; ++row) {
-    const MergeRow& merged = own.rig.client.merge.rows[row];
+    const MergeRow& merged = own.rig.client.picture.merge.rows[row];
     taken_over += merged.state == RowState::server && merged.server == 0;
   }
   CHECK(taken_over > (end - begin) / 3);
@@ -135,7 +135,7 @@ TEST_CASE("verify_does_without_any_server") {
     LiarRig own(options);
     for (std::uint32_t i = 0; i < server_count; ++i) make_liar(&own.rig.world, i, kKinds[0].lie);
     for (int i = 0; i < 8; ++i) CHECK(own.shows_truth(0.1 * i));
-    for (std::uint32_t i = 0; i < server_count; ++i) CHECK(own.server(i).lied);
+    for (std::uint32_t i = 0; i < server_count; ++i) CHECK(own.server(i).overture.lied);
     CHECK(own.rig.log.size() == server_count);
     CHECK(own.rig.client.share.device_rows == options.height);
     CHECK(is_settled(own.rig.client));
@@ -159,10 +159,10 @@ TEST_CASE("verify_catches_as_often_as_printed") {
     std::uint32_t* rows = &own.rig.client.verifier.sent_rows[0];
     *rows = 0;
     bool truth = own.shows_truth(0);
-    bool found = s->lied;
+    bool found = s->overture.lied;
     if (found) {
       CHECK(truth);
-      s->lied = s->told = false;
+      s->overture.lied = s->overture.told = false;
       own.rig.idle(20'000'000);
     }
     if (*rows == 0) continue;  // or it was caught by a row that both have
@@ -201,7 +201,7 @@ TEST_CASE("verify_costs_a_hundredth_of_the_time") {
                 row.height, checked / frames, 100.0 * frames_checked / frames, 100 * share);
     CHECK(checked * options.device_ns <= kHundredth * ns + options.device_ns);
     CHECK(checked * options.device_ns >= 0.9 * kHundredth * ns - 2 * options.device_ns);
-    for (std::uint32_t i = 0; i < 2; ++i) CHECK(!own.server(i).lied);
+    for (std::uint32_t i = 0; i < 2; ++i) CHECK(!own.server(i).overture.lied);
     CHECK(own.rig.log.empty());
   }
 }
@@ -214,8 +214,8 @@ TEST_CASE("verify_of_a_slow_device_finds_a_liar") {
   LiarRig own(options);
   make_liar(&own.rig.world, 0, kKinds[3].lie);
   int frames = 0;
-  while (!own.server(0).lied && frames < 400) own.rig.frame(0), ++frames;
-  CHECK(own.server(0).lied);
+  while (!own.server(0).overture.lied && frames < 400) own.rig.frame(0), ++frames;
+  CHECK(own.server(0).overture.lied);
 }
 
 // Goal: checked pixels are unpredictable: they depend only on the system's entropy. Method: the same session with two
@@ -259,7 +259,7 @@ TEST_CASE("verify_of_no_pixels_checks_nothing") {
   bool truth = true;
   for (int i = 0; i < 5; ++i) truth = own.shows_truth(0) && truth;
   CHECK(!truth);
-  CHECK(!own.server(0).lied);
+  CHECK(!own.server(0).overture.lied);
   CHECK(own.rig.client.share.checked[0] == 0);
 }
 
@@ -272,12 +272,12 @@ TEST_CASE("verify_compares_rows_that_both_have") {
   Client* c = &own.rig.client;
   RemoteServer* s = &own.server(0);
   std::size_t row_bytes = options.width * pixel_bytes(options.client.format);
-  REQUIRE(c->merge.rows[0].state == RowState::device);
+  REQUIRE(c->picture.merge.rows[0].state == RowState::device);
   std::memcpy(picture_row(s->decoder->state, 0), merged_row(*c, 0), row_bytes);
   CHECK(agrees_with_device(c, s, 0, 1));
   picture_row(s->decoder->state, 0)[row_bytes - 1] ^= 1;
   CHECK(!agrees_with_device(c, s, 0, 1));
-  CHECK(s->lied);
+  CHECK(s->overture.lied);
   CHECK(own.lines("row 0, column 31 is") == 1);
 }
 
@@ -293,16 +293,16 @@ TEST_CASE("verify_without_the_scene_finds_one_liar_of_three") {
       make_liar(&own.rig.world, liar, kKinds[kind].lie);
       int frames = 0;
       bool truth = false;
-      for (; frames < 400 && !own.server(liar).lied; ++frames) truth = own.shows_truth(0.05 * frames);
+      for (; frames < 400 && !own.server(liar).overture.lied; ++frames) truth = own.shows_truth(0.05 * frames);
       INFO("liar " << liar << ", kind " << kKinds[kind].name << ", frames " << frames << ", rows "
                    << own.rows_of(liar));
       for (const std::string& line : own.rig.log) INFO(line);
-      REQUIRE(own.server(liar).lied);
+      REQUIRE(own.server(liar).overture.lied);
       CHECK(truth);
       CHECK(own.lines("differs from two other servers") == 1);
       CHECK(own.rig.log.size() == 1);
       for (int i = 0; i < 6; ++i) CHECK(own.shows_truth(0.05 * (frames + i)));
-      for (std::uint32_t i = 0; i < 3; ++i) CHECK(own.server(i).lied == (i == liar));
+      for (std::uint32_t i = 0; i < 3; ++i) CHECK(own.server(i).overture.lied == (i == liar));
       CHECK(!own.rig.client.verifier.disputed);
     }
 }
@@ -319,8 +319,8 @@ TEST_CASE("verify_without_the_scene_tells_of_a_dispute") {
   CHECK(own.rig.client.verifier.disputed);
   CHECK(own.lines("sent different pixels for row") == 1);
   CHECK(own.rig.log.size() == 1);
-  CHECK(!own.server(0).lied);
-  CHECK(!own.server(1).lied);
+  CHECK(!own.server(0).overture.lied);
+  CHECK(!own.server(1).overture.lied);
 }
 
 // Goal: honest servers are never accused, and comparing them takes at most a hundredth of the time and one answer.
@@ -371,9 +371,9 @@ TEST_CASE("verify_as_the_commands_start_it") {
     CHECK(c.verifier.check_count == 5);
     CHECK(c.verifier.random.state != state);
     state = c.verifier.random.state;
-    CHECK(!c.servers[0].lied);
-    CHECK(c.servers[1].lied == (i == 1));
-    connected(servers)->client.servers[1].lied = true;
+    CHECK(!c.servers[0].overture.lied);
+    CHECK(c.servers[1].overture.lied == (i == 1));
+    connected(servers)->client.servers[1].overture.lied = true;
   }
   kRenderServers.close(servers);
   options.addresses.clear();

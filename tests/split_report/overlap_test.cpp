@@ -68,13 +68,13 @@ void next_frame(Pair* p) {
 
 // The chunks of the last frame as jobs: traced and sent at what the rows cost.
 std::vector<ShopJob> jobs_of(const Pair& p, double server_ns, double ns_per_byte) {
-  const FrameRequest& asked = p.client.servers[0].asked;
+  const FrameRequest& asked = p.client.servers[0].rows.asked;
   std::vector<ShopJob> jobs;
   for (RowSequence at = first_rows(asked); has_rows(at);) {
     const std::uint32_t rows = next_chunk_rows(asked, at);
     ShopJob job = {at.row_end - rows, at.row_end, server_ns * kWidth * rows, 0};
     for (std::uint32_t r = job.row_begin; r < job.row_end; ++r)
-      job.send_ns += ns_per_byte * static_cast<double>(p.client.model.rows[r].bytes.value);
+      job.send_ns += ns_per_byte * static_cast<double>(p.client.plan.model.rows[r].bytes.value);
     jobs.push_back(job);
     pass_rows(asked, rows, &at);
   }

@@ -125,7 +125,7 @@ Status measure_point(Experiment* e, std::uint32_t lap_count, SplitPoint* point, 
     e->times[measured++] = share.measured_ns / (double(settings.width) * settings.height);
     point->m += double(share.device_rows) / settings.height / frame_count;
     point->device_pixels += double(share.device_pixels) / frame_count;
-    point->prepared += double(e->client.prepared) / frame_count;
+    point->prepared += double(e->client.frame.prepared) / frame_count;
     point->bytes += double(share.bytes_in + share.bytes_out) / frame_count;
     point->row_bytes += double(share.row_bytes) / frame_count;
     point->by_effect += double(share.by_effect) / frame_count;
@@ -138,7 +138,7 @@ Status measure_point(Experiment* e, std::uint32_t lap_count, SplitPoint* point, 
     if (whole)
       send_picture(
           whole, merged_row(e->client, 0),
-          row_coding(e->client.servers[0].ns_per_byte, code_threshold(e->client, e->client.servers[0]), false));
+          row_coding(e->client.servers[0].link.ns_per_byte, code_threshold(e->client, e->client.servers[0]), false));
   }
   CHECK(!*complete || measured == frame_count);
   if (*complete) point->ns_per_pixel = range_of(e->times.data(), frame_count).median;

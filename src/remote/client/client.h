@@ -7,13 +7,10 @@
 #include "engine/pace.h"
 #include "engine/renderer.h"
 #include "remote/client/light.h"
-#include "remote/client/verify.h"
-#include "remote/stream.h"
+#include "remote/client/remote_server.h"
 #include "split/cost_model.h"
 #include "split/merge.h"
 #include "wire/code_cost.h"
-#include "wire/codec.h"
-#include "wire/row_sequence.h"
 
 namespace pocketray {
 
@@ -50,77 +47,6 @@ struct ClientOptions {
   std::uint64_t retry_ns_min = 500'000'000, retry_ns_max = 30'000'000'000;
   void (*log)(void* context, const char* line) = nullptr;  // writes one line when a server is lost or back
   void* log_context = nullptr;
-};
-
-enum class ServerPhase : std::uint8_t {
-  waiting,  // for the next attempt to connect
-  connecting,
-  greeting,   // hello
-  asking,     // for the scene
-  measuring,  // the link: pings
-  probing,    // the server: its first rows
-  ready,
-};
-
-const char* phase_text(ServerPhase phase);
-// Describes a server's error and how to mend it.
-const char* wire_error_text(WireError code);
-
-// A server's rows in a frame.
-struct ServerFrame {
-  std::uint32_t row_begin = 0, row_end = 0;  // requested
-  std::uint32_t rows_come = 0;               // received, including rows the device had already done
-  std::uint64_t asked_ns = 0, bytes = 0;
-  std::uint64_t row_bytes = 0;  // bytes of received rows without message overhead
-  double render_ns = 0;         // the server's work on received rows, at its price
-  double prepare_ns = 0;        // its work before them
-  bool open = false;            // more rows are expected
-  std::uint64_t heard_ns = 0;   // when the latest rows came, as seen: at most unseen_ns earlier
-  std::uint64_t unseen_ns = 0;
-  std::uint64_t first_ns = 0;      // when the first rows came
-  std::uint64_t bytes_behind = 0;  // bytes of the chunks after the first
-  double render_behind_ns = 0;     // the server's time for their rows
-  bool answers = false;            // has answered since the request, even if only a ping
-};
-
-struct RemoteServer {
-  platform::LinkAddress address;
-  ServerPhase phase = ServerPhase::waiting;
-  std::uint64_t phase_ns = 0;  // when its overture's phase began
-  MessageStream messages;
-  RowDecoder* decoder = nullptr;
-  platform::LinkTimer timer;                           // of the phase: next attempt, or when the server counts as lost
-  std::uint64_t retry_ns = 0;                          // until the next attempt
-  bool told = false;                                   // the reason it is not in use has been logged
-  bool lied = false;                                   // has sent wrong pixels and is never used again
-  std::uint64_t useful_ns = 0;                         // when this connection first brought rows; 0: not yet
-  std::uint32_t ping_id = 0, ping_bytes = 0;           // the ping awaiting an answer, and its payload; id 0: none
-  std::uint32_t pings_answered = 0, pings_missed = 0;  // missed: the device did not poll when the answer came
-  std::uint64_t ping_ns = 0, ping_due_ns = 0;
-  bool ping_alone = false;  // no rows of any server were in flight when it was sent
-  double round_trip_ns = 0, ns_per_byte = 0;
-  double scaled = 1;                 // factor on ns_per_byte from rows' times since its own measurement
-  std::uint64_t quiet_until_ns = 0;  // until then its link is measured and others send no rows
-  std::uint64_t anew_ns = 0;         // earliest time of the next measurement of its link
-  double probe_ns_per_pixel = 0;
-  Smoothed row_ns;                   // for a device without the scene: time from request to arrival of a row
-  FrameRequest asked;                // last request; frame 0: none on this connection
-  RowSequence due;                   // rows of it that are still expected,
-  std::uint32_t due_rows = 0;        // and their number
-  std::uint64_t late_rows = 0;       // rows of earlier requests that may be in flight;
-  std::uint64_t late_at_ping = 0;    // their number when the ping was sent
-  std::uint32_t coarse_due = 0;      // coarse pictures that may still come,
-  std::uint32_t light_due = 0;       // and light maps
-  std::uint64_t light_asked_ns = 0;  // when the current request's light was requested; 0: none is due
-  std::uint32_t light_missed = 0;    // connections since the last map that ended before one came
-  bool more = false;                 // unread input remains: one poll handles at most a frame's worth
-  bool unanswered = false;           // no answer since rows were requested; new requests do not extend the time
-  std::uint32_t chunk_count = 0;     // received on this connection
-  std::uint16_t price = kPriceUnit;  // as last stated
-  ServerFrame frame;
-  bool is_witness = false;   // asked for another server's row; its own rows of the frame
-  ServerFrame frame_before;  // are then kept here
-  ServerChecks checks;
 };
 
 // Summary of a finished frame, for users and the report.
@@ -169,6 +95,49 @@ struct DeviceRow {
   std::uint64_t took_ns = 0;  // so far
 };
 
+// The split of frames, learnt from earlier ones.
+struct SplitPlan {
+  CostModel model;
+  SplitWorkspace workspace;
+  Split split;
+  LinkTrial link_trial;
+  std::uint64_t frames_with_servers = 0;  // since a server came into use
+  Smoothed decode_ns, code_saves;         // per coded pixel: time to decode it; bytes that coding saves
+};
+
+// The current frame.
+struct ClientFrame {
+  FrameRequest request;
+  bool complete = true, joined = false;
+  bool held = false;  // requests wait until a link is measured
+  std::uint64_t begin_ns = 0, waited_ns = 0, looked_ns = 0;
+  double alone_ns = 0;           // predicted for the device without servers, rendering its rows of the frame likewise
+  bool prepared = false;         // the device can trace its pixels,
+  std::uint64_t prepare_ns = 0;  // after this long
+  bool unchanged = false;        // it equals the last one: nothing is requested
+  Arrivals arrivals;
+  DeviceRow device_row;
+  double device_ns = 0;             // spent on the device's own rows
+  std::uint64_t device_pixels = 0;  // traced for them
+  std::uint64_t progress_ns = 0;    // when missing rows last came
+  std::uint64_t bytes_in_before = 0, bytes_out_before = 0;
+};
+
+// Its coarse picture.
+struct ClientCoarse {
+  bool asked = false;    // a server was asked to send it first
+  bool shown = false;    // it is shown in the rows that were missing when it came,
+  std::uint64_t ns = 0;  // this long after the start of the frame
+};
+
+// The merged frame.
+struct MergedFrame {
+  Merge merge;
+  Array<std::uint8_t> pixels;                    // in the wire's format, rows without padding
+  std::uint64_t kept_count = 0;                  // of the device's coherence: the frame that `pixels` show; 0: unknown
+  std::uint32_t dirty_begin = 0, dirty_end = 0;  // rows changed since take_merged_rows()
+};
+
 struct Client {
   ClientOptions options;
   platform::Link* link = nullptr;
@@ -176,39 +145,15 @@ struct Client {
   ContentHash scene;
   std::uint32_t server_count = 0;
   RemoteServer servers[kServerCountMax];
-  CostModel model;
-  SplitWorkspace workspace;
-  Split split;
-  Merge merge;
+  SplitPlan plan;
+  ClientFrame frame;
+  ClientCoarse coarse;
+  MergedFrame picture;
   Verifier verifier;
-  Array<std::uint8_t> pixels;  // the merged frame in the wire's format, rows without padding
-  // The current frame.
-  FrameRequest request;
-  bool complete = true, joined = false;
-  bool coarse_asked = false;    // a server was asked to send a coarse picture first
-  bool coarse_shown = false;    // it is shown in the rows that were missing when it came,
-  std::uint64_t coarse_ns = 0;  // this long after the start of the frame
-  bool held = false;            // requests wait until a link is measured
-  std::uint64_t begin_ns = 0, waited_ns = 0, looked_ns = 0;
-  double alone_ns = 0;           // predicted for the device without servers, rendering its rows of the frame likewise
-  bool prepared = false;         // the device can trace its pixels,
-  std::uint64_t prepare_ns = 0;  // after this long
+  ClientLight light;
   mutable platform::LinkClock clock;
   std::uint64_t unwatched_ns = 0;  // time before the latest poll: input may have arrived that much earlier
-  Smoothed decode_ns, code_saves;  // per coded pixel: time to decode it; bytes that coding saves
-  Arrivals arrivals;
-  DeviceRow device_row;
-  double device_ns = 0;                          // spent on its own rows in this frame
-  std::uint64_t device_pixels = 0;               // traced in it
-  std::uint64_t kept_count = 0;                  // of the device's coherence: the frame that `pixels` show; 0: unknown
-  bool unchanged = false;                        // the frame equals the last one: nothing is requested
-  std::uint32_t dirty_begin = 0, dirty_end = 0;  // rows changed since take_merged_rows()
-  std::uint64_t frames_with_servers = 0;         // since a server came into use
-  LinkTrial link_trial;
-  std::uint64_t bytes_in_before = 0, bytes_out_before = 0;
-  FrameShare share;  // of the last complete frame
-  ClientLight light;
-  std::uint64_t progress_ns = 0;  // when missing rows last came
+  FrameShare share;                // of the last complete frame
 };
 
 // Order and coding of rows for a link of this speed, where coding pays above `threshold` nanoseconds per byte.
@@ -252,7 +197,7 @@ void finish_device_rows(Client* client, std::uint32_t row_begin, std::uint32_t r
 void end_client_frame(Client* client);
 
 // True if the frame has all its rows.
-inline bool has_all_rows(const Client& client) { return is_complete(client.merge); }
+inline bool has_all_rows(const Client& client) { return is_complete(client.picture.merge); }
 // Longest work between polls of the link; shorter while an answer is timed.
 double work_ns_max(const Client& client);
 // True if every server is in use or waits for its next attempt after a logged failure.
@@ -266,12 +211,12 @@ bool take_merged_rows(Client* client, std::uint32_t* row_begin, std::uint32_t* r
 // The link's clock, made monotonic.
 std::uint64_t client_now_ns(const Client& client);
 // Time since the start of the current frame.
-inline std::uint64_t client_elapsed_ns(const Client& client) { return client_now_ns(client) - client.begin_ns; }
+inline std::uint64_t client_elapsed_ns(const Client& client) { return client_now_ns(client) - client.frame.begin_ns; }
 // Levels by which an honest server's channels may be off.
 inline std::uint32_t pixel_tolerance(const Client& client) { return client.options.near_lossless ? 1 : 0; }
 // Start of a row in client->pixels.
 inline std::uint8_t* merged_row(const Client& client, std::uint32_t row) {
-  return client.pixels.data + std::size_t(row) * client.settings.width * pixel_bytes(client.options.format);
+  return client.picture.pixels.data + std::size_t(row) * client.settings.width * pixel_bytes(client.options.format);
 }
 
 }  // namespace pocketray

@@ -55,7 +55,7 @@ void hand_out(ClientRows* s, const SharedSpans& spans, SpanBatch* batch) {
 // that neither side considers the other lost.
 void next_part(ClientRows* s, SpanBatch* batch) {
   const Client& client = *s->client;
-  const DeviceRow& row = client.device_row;
+  const DeviceRow& row = client.frame.device_row;
   const std::uint32_t width = client.settings.width;
   CHECK_LT(row.columns_done, width);
   double pixels = row.pixel_ns > 0 ? work_ns_max(client) / row.pixel_ns : kFirstPixels;
@@ -86,16 +86,16 @@ void next_rows(void* context, SpanBatch* batch) {
   ClientRows* s = static_cast<ClientRows*>(context);
   const Renderer& renderer = *s->renderer;
   Client* client = s->client;
-  DeviceRow* row = &client->device_row;
+  DeviceRow* row = &client->frame.device_row;
   // A server may have sent the row meanwhile.
-  if (row->in_parts && client->merge.rows[row->row].state != RowState::taken) row->in_parts = false;
+  if (row->in_parts && client->picture.merge.rows[row->row].state != RowState::taken) row->in_parts = false;
   if (row->in_parts) return next_part(s, batch);
   if (has_all_rows(*client)) return;
   if (!has_device_rows(*client)) {
     s->lights = light_rows(s->renderer, client);
     return;
   }
-  if (!client->prepared) prepare_device(s->renderer, client);
+  if (!client->frame.prepared) prepare_device(s->renderer, client);
   double pixel_ns = device_pixel_ns(*client), row_ns = pixel_ns * renderer.settings.width;
   bool is_long = row_ns == 0 || row_ns > work_ns_max(*client);
   if (!take_changed_rows(s, is_long)) return;
@@ -108,7 +108,7 @@ void next_rows(void* context, SpanBatch* batch) {
 
 void pack_batch(void* context, const SpanBatch&) {
   const ClientRows& s = *static_cast<ClientRows*>(context);
-  if (s.client->device_row.in_parts && s.column_end < s.client->settings.width) return;
+  if (s.client->frame.device_row.in_parts && s.column_end < s.client->settings.width) return;
   pack_device_rows(*s.renderer, s.client, s.row_begin, s.row_end);
 }
 
@@ -120,7 +120,7 @@ std::uint64_t pace_batch(void* context, const SpanBatch& batch, std::uint64_t be
 // Records the batch's time. Returns true if all its rows are rendered.
 bool finish_batch(const ClientRows& s, const SpanBatch& batch) {
   Client* client = s.client;
-  DeviceRow* row = &client->device_row;
+  DeviceRow* row = &client->frame.device_row;
   std::uint64_t rows_ns = batch.took_ns, pixel_count = s.pixel_count;
   if (row->in_parts) {
     rows_ns = row->took_ns += batch.took_ns;
@@ -146,15 +146,15 @@ bool merge_rows(void* context, const SpanBatch& batch) {
     if (client->options.has_scene) {
       end_frame(s.renderer);
       const Coherence& c = s.renderer->history.coherence;
-      client->kept_count = client->prepared && c.signature.known ? c.kept_count : 0;
+      client->picture.kept_count = client->frame.prepared && c.signature.known ? c.kept_count : 0;
     }
     end_client_frame(client);
     return true;
   }
-  const bool was_shown = client->coarse_shown;
+  const bool was_shown = client->coarse.shown;
   advance_client(client, is_tracing || s.lights ? 0 : kWaitNs);
   s.lights = false;
-  if (client->coarse_shown && !was_shown) *s.coarse_comes = true;
+  if (client->coarse.shown && !was_shown) *s.coarse_comes = true;
   return false;
 }
 
@@ -165,14 +165,14 @@ Status prepare_rows(Renderer* renderer, Client* client, FrameStart* start) {
   if (client->light.by_effect) task.first_hits = client->light.first_hits.data;
   RETURN_IF_ERROR(begin_frame(renderer, task));
   const std::uint64_t posed_ns = renderer->pace.clock->now_ns();
-  start->unchanged = client->complete && client->kept_count > 0 &&
-                     client->kept_count == renderer->history.coherence.kept_count &&
-                     is_shared_frame_unchanged(*renderer) && renderer->view.exposure == client->request.exposure;
+  start->unchanged = client->frame.complete && client->picture.kept_count > 0 &&
+                     client->picture.kept_count == renderer->history.coherence.kept_count &&
+                     is_shared_frame_unchanged(*renderer) && renderer->view.exposure == client->frame.request.exposure;
   search_shared_rows(renderer, ~0u);
   const float width = static_cast<float>(renderer->settings.width);
   const float own_part = client->light.by_effect ? static_cast<float>(own_light_part(*client)) : 1;
   for (std::uint32_t row = 0; row < renderer->settings.height; ++row)
-    client->model.rows[row].device_part = own_part * static_cast<float>(count_pixels(*renderer, row)) / width;
+    client->plan.model.rows[row].device_part = own_part * static_cast<float>(count_pixels(*renderer, row)) / width;
   wait_for_pace(&renderer->pace, 0, posed_ns);
   start->prepared = true;
   start->prepare_ns = client_now_ns(*client) - begin_ns;
@@ -182,7 +182,7 @@ Status prepare_rows(Renderer* renderer, Client* client, FrameStart* start) {
     start->prepare_ns = paced_prepare_ns(pace, start->prepare_ns);
     work_until(client, begin_ns + start->prepare_ns);
   }
-  observe_device_start(&client->model, static_cast<double>(start->prepare_ns));
+  observe_device_start(&client->plan.model, static_cast<double>(start->prepare_ns));
   return success();
 }
 
@@ -193,8 +193,8 @@ bool asks_first(const Renderer& renderer, const Client& client, double seconds) 
   const Array<const Camera>& cameras = renderer.scene.cameras;
   const bool camera_known = renderer.view.camera_overridden || renderer.view.camera_index >= cameras.count ||
                             cameras[renderer.view.camera_index].node == kNone;
-  return client.options.has_scene && camera_known && renderer.pose.positions.count > 0 && !client.unchanged &&
-         seconds != client.request.seconds;
+  return client.options.has_scene && camera_known && renderer.pose.positions.count > 0 && !client.frame.unchanged &&
+         seconds != client.frame.request.seconds;
 }
 
 }  // namespace
@@ -204,12 +204,12 @@ void pack_device_rows(const Renderer& renderer, Client* client, std::uint32_t ro
   bool small = client->options.format == WireFormat::rgb565;
   pack_rows(renderer.image.data, width, height, static_cast<int>(row_begin), static_cast<int>(row_end),
             renderer.view.exposure, small ? kRgb565 : kRgb888, Rotation::none, client->options.dither,
-            client->pixels.data, width * static_cast<int>(pixel_bytes(client->options.format)));
+            client->picture.pixels.data, width * static_cast<int>(pixel_bytes(client->options.format)));
 }
 
 void prepare_device(Renderer* renderer, Client* client) {
   FrameStart start;
-  start.seconds = client->request.seconds;
+  start.seconds = client->frame.request.seconds;
   CHECK(prepare_rows(renderer, client, &start).ok);  // time and camera have been checked
   device_is_ready(client, start.prepare_ns);
 }
@@ -230,7 +230,7 @@ Status begin_frame(Renderer* renderer, Client* client, double seconds) {
 }
 
 bool advance_frame(Renderer* renderer, Client* client, std::uint64_t deadline_ns, const std::atomic<bool>* stop) {
-  if (client->complete) return true;
+  if (client->frame.complete) return true;
   CHECK_EQ(renderer->settings.width, client->settings.width);
   CHECK_EQ(renderer->settings.height, client->settings.height);
   ClientRows rows;

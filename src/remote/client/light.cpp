@@ -25,10 +25,10 @@ RemoteServer* best_server(Client* client) {
   RemoteServer* best = nullptr;
   for (std::uint32_t i = 0; i < client->server_count; ++i) {
     RemoteServer* server = &client->servers[i];
-    if (server->lied || server->phase < ServerPhase::probing) continue;
+    if (server->overture.lied || server->overture.phase < ServerPhase::probing) continue;
     const bool is_better =
-        best && (server->light_missed != best->light_missed ? server->light_missed < best->light_missed
-                                                            : server->price < best->price);
+        best && (server->light.missed != best->light.missed ? server->light.missed < best->light.missed
+                                                            : server->rows.price < best->rows.price);
     if (!best || is_better) best = server;
   }
   return best;
@@ -36,17 +36,18 @@ RemoteServer* best_server(Client* client) {
 
 // True if a server may soon qualify, before the first map.
 bool is_one_joining(const Client& client) {
-  if (client.light.map_request.frame > 0 || client.request.frame > 1) return false;
+  if (client.light.map_request.frame > 0 || client.frame.request.frame > 1) return false;
   return std::any_of(client.servers, client.servers + client.server_count, [](const RemoteServer& server) {
-    const bool waits = server.phase == ServerPhase::waiting;
-    return !server.lied && server.light_missed == 0 && server.phase < ServerPhase::probing && !(waits && server.told);
+    const bool waits = server.overture.phase == ServerPhase::waiting;
+    return !server.overture.lied && server.light.missed == 0 && server.overture.phase < ServerPhase::probing &&
+           !(waits && server.overture.told);
   });
 }
 
 // Requests only the light.
 void request_light(Client* client, RemoteServer* server) {
   Message message;
-  message.frame_request = client->request;
+  message.frame_request = client->frame.request;
   FrameRequest* q = &message.frame_request;
   q->row_begin = q->row_end = 0;
   q->run_count = 0, q->coarse_first = false;
@@ -54,12 +55,14 @@ void request_light(Client* client, RemoteServer* server) {
   send_request(client, server, &message);
 }
 
-bool is_own(const Client& client, std::uint32_t row) { return client.merge.rows[row].state == RowState::device; }
+bool is_own(const Client& client, std::uint32_t row) {
+  return client.picture.merge.rows[row].state == RowState::device;
+}
 
 // Returns the device's next rows from `begin` on that still lack light, at most `count_max`, skipping servers' rows.
 // While the device may still take rows, stops at the first that it may take.
 RowRange own_rows(const Client& client, std::uint32_t begin, std::uint32_t count_max) {
-  const std::uint32_t limit = has_all_rows(client) ? client.settings.height : client.merge.next_row;
+  const std::uint32_t limit = has_all_rows(client) ? client.settings.height : client.picture.merge.next_row;
   while (begin < limit && !is_own(client, begin)) ++begin;
   std::uint32_t end = begin;
   while (end < limit && end - begin < count_max && is_own(client, end)) ++end;
@@ -68,7 +71,7 @@ RowRange own_rows(const Client& client, std::uint32_t begin, std::uint32_t count
 
 double mean_device_part(const Client& client) {
   double sum = 0;
-  for (const RowModel& row : client.model.rows) sum += static_cast<double>(row.device_part);
+  for (const RowModel& row : client.plan.model.rows) sum += static_cast<double>(row.device_part);
   return sum / client.settings.height;
 }
 
@@ -77,7 +80,7 @@ void observe_light_added(Client* client, std::uint32_t row_begin, std::uint32_t 
   if (!client->light.shares_rows) return;
   const auto each_ns = static_cast<float>(ns / (row_end - row_begin));
   for (std::uint32_t row = row_begin; row < row_end; ++row)
-    if (client->model.rows[row].device_ns_seen > 0) client->model.rows[row].device_ns_seen += each_ns;
+    if (client->plan.model.rows[row].device_ns_seen > 0) client->plan.model.rows[row].device_ns_seen += each_ns;
 }
 
 // Takes the surfaces that this frame's map shows once the device's rows are traced, and the map once it has
@@ -85,7 +88,7 @@ void observe_light_added(Client* client, std::uint32_t row_begin, std::uint32_t 
 void take_map(Renderer* renderer, Client* client) {
   ClientLight* l = &client->light;
   const std::uint32_t next = 1 - l->newest;
-  if (l->asked.frame > 0 && l->asked.frame == client->request.frame && !l->has_surfaces) {
+  if (l->asked.frame > 0 && l->asked.frame == client->frame.request.frame && !l->has_surfaces) {
     std::uint32_t row_end = 0;
     while (row_end < client->settings.height && is_own(*client, row_end)) ++row_end;
     take_mapped_surfaces(renderer, l->first_hits.data, row_end, l->grid, l->surfaces[next].data);
@@ -141,17 +144,17 @@ void tell_unlit(Client* client) {
 bool wants_map(const Client& client) {
   const ClientLight& l = client.light;
   if (!l.by_effect || l.asked.frame > 0) return false;
-  const std::uint32_t frame = client.request.frame;
+  const std::uint32_t frame = client.frame.request.frame;
   const bool has_map = l.map_request.frame > 0;
-  if (has_map && same_view(l.map_request, client.request)) return false;
+  if (has_map && same_view(l.map_request, client.frame.request)) return false;
   // A map requested in this frame may have been lost with its server.
   return !has_map || l.rests || frame == l.last_asked || frame - l.last_asked >= client.options.light.every;
 }
 
 // Includes the value of its cost, if the user weighs cost.
 double predict_ns(Client* client, const RowsOfDevice& rows, const Smoothed& error) {
-  const SplitProblem problem = make_problem(&client->model, client->options.wish, rows);
-  const Split split = find_split(problem, &client->workspace);
+  const SplitProblem problem = make_problem(&client->plan.model, client->options.wish, rows);
+  const Split split = find_split(problem, &client->plan.workspace);
   return static_cast<double>(split.time_ns) * value_or(error, 1) +
          (problem.weigh_cost ? static_cast<double>(split.cost) : 0);
 }
@@ -165,7 +168,7 @@ void predict_ways(Client* client) {
   l->rows_ns = predict_ns(client, rows, l->choice.rows_error);
   l->effect_ns = 0;
   const RemoteServer* mapper = best_server(client);
-  if (!mapper || !is_known(client->model.light.own_part) || !is_known(client->model.light.arrival_ns)) return;
+  if (!mapper || !is_known(client->plan.model.light.own_part) || !is_known(client->plan.model.light.arrival_ns)) return;
   l->effect_ns = predict_ns(client, {own_light_part(*client), index_of(*client, mapper)}, l->choice.effect_error);
 }
 
@@ -175,7 +178,8 @@ bool is_effect_wanted(Client* client) {
   // Servers come into use by rows; one whose rows never come in time does not keep the others from sending light.
   const std::uint64_t now = client_now_ns(*client), limit = client->options.silence_timeout_ns;
   const bool probes = std::any_of(client->servers, client->servers + client->server_count, [&](const RemoteServer& s) {
-    return s.phase == ServerPhase::measuring || (s.phase == ServerPhase::probing && now - s.phase_ns < limit);
+    return s.overture.phase == ServerPhase::measuring ||
+           (s.overture.phase == ServerPhase::probing && now - s.overture.phase_ns < limit);
   });
   if (probes || !best_server(client)) return false;
   predict_ways(client);
@@ -236,8 +240,8 @@ void begin_light_frame(Client* client) {
   if (l->grid.pitch == 0) return;
   // Without the frame's first hits, the map's surfaces are unknown.
   if (l->asked.frame > 0 && !l->has_surfaces) l->asked.frame = 0;
-  l->rests = l->last.frame > 0 && same_view(l->last, client->request);
-  l->last = client->request;
+  l->rests = l->last.frame > 0 && same_view(l->last, client->frame.request);
+  l->last = client->frame.request;
   l->traced_ns = 0, l->rows_lit = 0, l->is_done = false;
   l->times = EffectTimes();
   client->share.by_effect = l->by_effect;
@@ -248,7 +252,7 @@ bool want_light_with(Client* client, RemoteServer* server, FrameRequest* q) {
   ClientLight* l = &client->light;
   if (!wants_map(*client) || server != best_server(client)) return false;
   q->light_pitch = static_cast<std::uint8_t>(l->grid.pitch);
-  ++server->light_due;
+  ++server->light.due;
   l->asked = *q;
   l->asked_server = index_of(*client, server), l->last_asked = q->frame;
   l->asked_ns = client_now_ns(*client);
@@ -256,7 +260,7 @@ bool want_light_with(Client* client, RemoteServer* server, FrameRequest* q) {
   return true;
 }
 
-double own_light_part(const Client& client) { return value_or(client.model.light.own_part, 1); }
+double own_light_part(const Client& client) { return value_or(client.plan.model.light.own_part, 1); }
 
 std::uint32_t mapper_of_frame(Client* client) {
   const RemoteServer* server = wants_map(*client) ? best_server(client) : nullptr;
@@ -265,36 +269,36 @@ std::uint32_t mapper_of_frame(Client* client) {
 
 void ask_for_light(Client* client) {
   const ClientLight& l = client->light;
-  if (client->complete || l.rows_lit > 0 || l.is_done || !wants_map(*client)) return;
+  if (client->frame.complete || l.rows_lit > 0 || l.is_done || !wants_map(*client)) return;
   RemoteServer* server = best_server(client);
-  if (server && !server->frame.open) request_light(client, server);
+  if (server && !server->rows.frame.open) request_light(client, server);
 }
 
 void take_light(Client* client, RemoteServer* server, LightMapMessage message) {
   ClientLight* l = &client->light;
-  message.frame = frame_of(message.frame, server->asked.frame);
-  const bool is_last = message.frame == server->asked.frame;
-  if (server->light_due <= (is_last ? 0u : awaits_light(*server))) return lose_server(client, server, kUnasked);
-  server->light_due = is_last ? 0 : server->light_due - 1;
-  if (is_last) server->light_asked_ns = 0;
-  server->price = message.price;
-  if (server->light_due == 0) server->late_rows = server->late_at_ping = 0;
+  message.frame = frame_of(message.frame, server->rows.asked.frame);
+  const bool is_last = message.frame == server->rows.asked.frame;
+  if (server->light.due <= (is_last ? 0u : awaits_light(*server))) return lose_server(client, server, kUnasked);
+  server->light.due = is_last ? 0 : server->light.due - 1;
+  if (is_last) server->light.asked_ns = 0;
+  server->rows.price = message.price;
+  if (server->light.due == 0) server->rows.late_rows = server->link.late_at_ping = 0;
   const std::uint32_t index = index_of(*client, server), bytes = light_map_prefix_bytes() + message.bytes.count;
-  observe_price(&client->model, index, price_ratio(message.price));
-  server->frame.bytes += bytes;
+  observe_price(&client->plan.model, index, price_ratio(message.price));
+  server->rows.frame.bytes += bytes;
   client->share.light_bytes += bytes;
   if (message.frame != l->asked.frame || index != l->asked_server || l->has_come) return;
   if (!decode_light(message.bytes.data, message.bytes.count, l->grid.columns, l->grid.rows,
                     l->light[1 - l->newest].data))
     return lose_server(client, server, "it sent light that cannot be decoded");
   l->has_come = true;
-  server->light_missed = 0;
+  server->light.missed = 0;
   const double took_ns = static_cast<double>(client_now_ns(*client) - l->asked_ns);
   l->times.server_ns = 1e-3 * message.light_ps * light_count(l->grid) * price_ratio(message.price);
   l->times.transfer_ns = std::max(0.0, took_ns - l->times.server_ns);
-  observe_map(&client->model, l->times.server_ns, bytes, took_ns);
-  if (server->phase == ServerPhase::probing && !l->shares_rows) server_is_ready(client, server);
-  if (server->useful_ns == 0 || server->told) server_is_useful(client, server);
+  observe_map(&client->plan.model, l->times.server_ns, bytes, took_ns);
+  if (server->overture.phase == ServerPhase::probing && !l->shares_rows) server_is_ready(client, server);
+  if (server->overture.useful_ns == 0 || server->overture.told) server_is_useful(client, server);
 }
 
 void forget_light_of(Client* client, std::uint32_t server) {
@@ -310,11 +314,11 @@ bool light_rows(Renderer* renderer, Client* client) {
   if (l->traced_ns == 0) ask_for_light(client), l->traced_ns = now;
   take_map(renderer, client);
   const LightOptions& o = client->options.light;
-  const bool is_asked = l->asked.frame == client->request.frame;
+  const bool is_asked = l->asked.frame == client->frame.request.frame;
   const bool is_due = l->rows_lit == 0 && (is_asked || is_one_joining(*client));
-  const bool is_patient = o.wait_ns > 0 && !(is_asked && client->servers[l->asked_server].light_missed > 0);
+  const bool is_patient = o.wait_ns > 0 && !(is_asked && client->servers[l->asked_server].light.missed > 0);
   const std::uint64_t since = is_patient && is_asked ? std::max(l->traced_ns, l->asked_ns) : l->traced_ns;
-  const std::uint64_t wait_ns = is_patient ? o.wait_ns : static_cast<std::uint64_t>(client->device_ns);
+  const std::uint64_t wait_ns = is_patient ? o.wait_ns : static_cast<std::uint64_t>(client->frame.device_ns);
   if (is_due && now - since < wait_ns) return false;
   const bool has_all = has_all_rows(*client);
   if (l->map_request.frame == 0) {
@@ -332,7 +336,7 @@ bool light_rows(Renderer* renderer, Client* client) {
     l->times.add_ns += static_cast<double>(took_ns);
   }
   client->share.has_light = true;
-  client->share.light_age = client->request.frame - l->map_request.frame;
+  client->share.light_age = client->frame.request.frame - l->map_request.frame;
   l->is_done = has_all && l->rows_lit == client->settings.height;
   return rows.begin < rows.end;
 }
@@ -345,15 +349,15 @@ void end_light_frame(Client* client) {
   const FrameShare& share = client->share;
   if (l->by_effect) tell_unlit(client);
   const bool chooses = client->options.light.split == SplitKind::automatic;
-  if (chooses && (client->joined || l->by_effect) && !client->unchanged)
-    observe_choice(&l->choice, l->by_effect, client->frames_with_servers > 1 ? share.predicted_ns : 0,
+  if (chooses && (client->frame.joined || l->by_effect) && !client->frame.unchanged)
+    observe_choice(&l->choice, l->by_effect, client->plan.frames_with_servers > 1 ? share.predicted_ns : 0,
                    share.measured_ns);
   if (!l->by_effect) {
     l->rows_part = mean_device_part(*client);
     return;
   }
-  l->times.prepare_ns = static_cast<double>(client->prepare_ns);
-  l->times.device_ns = client->device_ns;
+  l->times.prepare_ns = static_cast<double>(client->frame.prepare_ns);
+  l->times.device_ns = client->frame.device_ns;
   observe_effect_times(&l->model, l->times);
   if (!l->shares_rows) client->share.predicted_ns = l->effect_ns = predict_effect_ns(l->model);
 }

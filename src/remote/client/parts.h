@@ -151,7 +151,9 @@ bool want_light_with(Client* client, RemoteServer* server, FrameRequest* request
 // Requests the light from that server, if it has no rows to send.
 void ask_for_light(Client* client);
 // True if the light of its last request is still due. It comes before the rows.
-inline bool awaits_light(const RemoteServer& server) { return server.light_due > 0 && server.asked.light_pitch > 0; }
+inline bool awaits_light(const RemoteServer& server) {
+  return server.light.due > 0 && server.rows.asked.light_pitch > 0;
+}
 void take_light(Client* client, RemoteServer* server, LightMapMessage message);
 // Call when the server will not send the requested light, or too late.
 void forget_light_of(Client* client, std::uint32_t server);

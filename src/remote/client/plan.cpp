@@ -57,7 +57,7 @@ Split split_by_share(const Client& client, const SplitProblem& problem) {
   split.server_count = client.server_count;
   double rows = problem.row_count, speed_sum = 0, so_far = 0;
   auto speed_of = [&](std::uint32_t i) {
-    return problem.servers[i].usable ? 1 / server_slowness(client.model.servers[i]) : 0;
+    return problem.servers[i].usable ? 1 / server_slowness(client.plan.model.servers[i]) : 0;
   };
   for (std::uint32_t i = 0; i < client.server_count; ++i) speed_sum += speed_of(i);
   double device_rows = speed_sum > 0 ? std::floor(rows * client.options.device_share + 0.5) : rows;
@@ -77,9 +77,10 @@ void probe_servers(Client* client) {
   std::uint32_t rows = std::max(1u, std::min(kProbeRowsMax, bottom / kProbeDivisor));
   for (std::uint32_t i = 0; i < client->server_count; ++i) {
     RemoteServer* server = &client->servers[i];
-    if (server->phase != ServerPhase::probing || server->frame.open || server->frame.rows_come > 0) continue;
-    while (bottom > 0 && client->merge.rows[bottom - 1].state != RowState::missing) --bottom;
-    if (bottom < client->merge.next_row + 2 * rows) return;  // too late for this frame
+    if (server->overture.phase != ServerPhase::probing || server->rows.frame.open || server->rows.frame.rows_come > 0)
+      continue;
+    while (bottom > 0 && client->picture.merge.rows[bottom - 1].state != RowState::missing) --bottom;
+    if (bottom < client->picture.merge.next_row + 2 * rows) return;  // too late for this frame
     ask_for_rows(client, server, bottom - rows, bottom);
     bottom -= rows;
   }
@@ -87,23 +88,24 @@ void probe_servers(Client* client) {
 
 void finish_probe(Client* client, RemoteServer* server) {
   double device = device_pixel_ns(*client);
-  if (device == 0 || server->frame.open || server->frame.rows_come == 0) return;
-  double pixels = static_cast<double>(server->frame.rows_come) * client->settings.width;
-  double bytes_per_pixel = std::max(1e-3, static_cast<double>(server->frame.bytes) / pixels);
-  PixelTimes times = {device, server->probe_ns_per_pixel, server->ns_per_byte * bytes_per_pixel};
-  observe_overture(&client->model, index_of(*client, server), times, bytes_per_pixel, server->round_trip_ns);
-  observe_own_link(&client->model, server->ns_per_byte);
+  if (device == 0 || server->rows.frame.open || server->rows.frame.rows_come == 0) return;
+  double pixels = static_cast<double>(server->rows.frame.rows_come) * client->settings.width;
+  double bytes_per_pixel = std::max(1e-3, static_cast<double>(server->rows.frame.bytes) / pixels);
+  PixelTimes times = {device, server->overture.probe_ns_per_pixel, server->link.ns_per_byte * bytes_per_pixel};
+  observe_overture(&client->plan.model, index_of(*client, server), times, bytes_per_pixel, server->link.round_trip_ns);
+  observe_own_link(&client->plan.model, server->link.ns_per_byte);
   server_is_ready(client, server);
-  client->frames_with_servers = 0;
+  client->plan.frames_with_servers = 0;
 }
 
 }  // namespace
 
 double code_threshold(const Client& client, const RemoteServer& server) {
-  const bool known = is_known(client.decode_ns) && is_known(client.code_saves);
+  const bool known = is_known(client.plan.decode_ns) && is_known(client.plan.code_saves);
   if (!known) return kCodeNsPerByte;
-  const double pays = static_cast<double>(client.decode_ns.value) / static_cast<double>(client.code_saves.value);
-  return server.asked.coding == RowCoding::raw ? pays * kCodeMargin : pays / kCodeMargin;
+  const double pays =
+      static_cast<double>(client.plan.decode_ns.value) / static_cast<double>(client.plan.code_saves.value);
+  return server.rows.asked.coding == RowCoding::raw ? pays * kCodeMargin : pays / kCodeMargin;
 }
 
 RowCoding row_coding(double ns_per_byte, double threshold, bool near_lossless) {
@@ -115,7 +117,8 @@ void ask_for_rows(Client* client, RemoteServer* server, std::uint32_t row_begin,
                   const SplitProblem* problem) {
   CHECK(row_begin <= row_end && row_end <= client->settings.height);
   auto is_done = [&](std::uint32_t row) {
-    return client->merge.rows[row].state == RowState::device || client->merge.rows[row].state == RowState::server;
+    return client->picture.merge.rows[row].state == RowState::device ||
+           client->picture.merge.rows[row].state == RowState::server;
   };
   while (row_end > row_begin && is_done(row_end - 1)) --row_end;
   if (row_begin < row_end) request_rows(client, server, row_begin, row_end, problem);
@@ -126,115 +129,118 @@ void request_rows(Client* client, RemoteServer* server, std::uint32_t row_begin,
   Message message;
   CHECK(row_begin < row_end && row_end <= client->settings.height);
   CHECK_GE(server->messages.stream, 0);
-  message.frame_request = client->request;
+  message.frame_request = client->frame.request;
   message.frame_request.row_begin = static_cast<std::uint16_t>(row_begin);
   message.frame_request.row_end = static_cast<std::uint16_t>(row_end);
   const std::uint32_t index = index_of(*client, server);
   if (problem) set_order(*problem, index, &message.frame_request);
   const bool ordered = message.frame_request.run_count > 0;
-  client->model.servers[index].chunk_rows = ordered ? kChunkRowsMin : kChunkRowsEven;
+  client->plan.model.servers[index].chunk_rows = ordered ? kChunkRowsMin : kChunkRowsEven;
   const std::uint32_t chunk_rows = ordered ? kChunkRowsMax : kChunkRowsEven;
   message.frame_request.chunk_rows = static_cast<std::uint16_t>(std::min(chunk_rows, client->settings.height));
   message.frame_request.coding =
-      row_coding(server->ns_per_byte, code_threshold(*client, *server), client->options.near_lossless);
+      row_coding(server->link.ns_per_byte, code_threshold(*client, *server), client->options.near_lossless);
   forget_light_of(client, index);
   want_light_with(client, server, &message.frame_request);
-  if (message.frame_request.coarse_first) ++server->coarse_due, client->coarse_asked = true;
-  client->request.coarse_first = false;
-  std::uint64_t bytes = server->frame.bytes, row_bytes = server->frame.row_bytes;
-  server->frame = ServerFrame();
-  server->frame.row_begin = row_begin, server->frame.row_end = row_end;
-  server->frame.asked_ns = client_now_ns(*client), server->frame.bytes = bytes, server->frame.row_bytes = row_bytes;
-  server->frame.open = true;
+  if (message.frame_request.coarse_first) ++server->rows.coarse_due, client->coarse.asked = true;
+  client->frame.request.coarse_first = false;
+  std::uint64_t bytes = server->rows.frame.bytes, row_bytes = server->rows.frame.row_bytes;
+  server->rows.frame = ServerFrame();
+  server->rows.frame.row_begin = row_begin, server->rows.frame.row_end = row_end;
+  server->rows.frame.asked_ns = client_now_ns(*client), server->rows.frame.bytes = bytes,
+  server->rows.frame.row_bytes = row_bytes;
+  server->rows.frame.open = true;
   send_request(client, server, &message);
 }
 
 void send_request(Client* client, RemoteServer* server, Message* message) {
-  const bool like_the_last = server->asked.frame > 0 && is_change(message->frame_request, server->asked);
+  const bool like_the_last = server->rows.asked.frame > 0 && is_change(message->frame_request, server->rows.asked);
   message->type = like_the_last ? MessageType::frame_change : MessageType::frame_request;
-  const FrameRequest& q = server->asked = message->frame_request;
-  server->late_rows += server->due_rows;
-  server->due = first_rows(q), server->due_rows = q.row_end - q.row_begin;
-  server->light_asked_ns = q.light_pitch > 0 ? client_now_ns(*client) : 0;
+  const FrameRequest& q = server->rows.asked = message->frame_request;
+  server->rows.late_rows += server->rows.due_rows;
+  server->rows.due = first_rows(q), server->rows.due_rows = q.row_end - q.row_begin;
+  server->light.asked_ns = q.light_pitch > 0 ? client_now_ns(*client) : 0;
   if (!send_message(&server->messages, *message)) return lose_server(client, server, "it stopped reading");
-  if (!server->unanswered)
-    server->timer = platform::link_timer(client_now_ns(*client), silence_limit_ns(*client, *server));
-  server->unanswered = true;
+  if (!server->rows.unanswered)
+    server->overture.timer = platform::link_timer(client_now_ns(*client), silence_limit_ns(*client, *server));
+  server->rows.unanswered = true;
   flush_server(client, server);
 }
 
 double device_pixel_ns(const Client& client) {
   double width = client.settings.width;
-  if (client.device_pixels > 0) return client.device_ns / static_cast<double>(client.device_pixels);
+  if (client.frame.device_pixels > 0) return client.frame.device_ns / static_cast<double>(client.frame.device_pixels);
   double sum = 0;
   std::uint32_t count = 0;
-  for (const RowModel& row : client.model.rows)
+  for (const RowModel& row : client.plan.model.rows)
     if (is_known(row.device_ns)) sum += static_cast<double>(row.device_ns.value), ++count;
   return count ? sum / (width * count) : 0;
 }
 
 void share_rows(Client* client) {
-  CHECK(client->options.has_scene && !client->complete);
+  CHECK(client->options.has_scene && !client->frame.complete);
   const bool by_effect = client->light.by_effect;
   RowsOfDevice own;
   if (by_effect) own = {own_light_part(*client), mapper_of_frame(client)};
-  SplitProblem problem = make_problem(&client->model, client->options.wish, own);
+  SplitProblem problem = make_problem(&client->plan.model, client->options.wish, own);
   // Times count from the start of the frame: the device can render once it is prepared, servers start when asked.
   const std::uint64_t elapsed_ns = client_elapsed_ns(*client);
   auto from_now = [&](std::uint64_t* start_ns) { *start_ns = std::min(kRowTableMax, *start_ns + elapsed_ns); };
-  if (client->prepared)
-    problem.device_start_ns = std::min(kRowTableMax, client->prepare_ns);
+  if (client->frame.prepared)
+    problem.device_start_ns = std::min(kRowTableMax, client->frame.prepare_ns);
   else
     from_now(&problem.device_start_ns);
   from_now(&problem.link_start_ns);
   for (std::uint32_t i = 0; i < client->server_count; ++i) from_now(&problem.servers[i].start_ns);
   if (client->options.device_share >= 0)
-    client->split = split_by_share(*client, problem);
+    client->plan.split = split_by_share(*client, problem);
   else
-    client->split = client->device_pixels > 0 ? find_split(problem, &client->workspace)
-                                              : next_split(problem, client->split, &client->workspace);
-  client->share.predicted_ns = static_cast<double>(client->split.time_ns);
-  const std::uint64_t link_ns = problem.link_ns[problem.row_count] - problem.link_ns[client->split.boundary[0]];
-  client->link_trial.limited =
+    client->plan.split = client->frame.device_pixels > 0
+                             ? find_split(problem, &client->plan.workspace)
+                             : next_split(problem, client->plan.split, &client->plan.workspace);
+  client->share.predicted_ns = static_cast<double>(client->plan.split.time_ns);
+  const std::uint64_t link_ns = problem.link_ns[problem.row_count] - problem.link_ns[client->plan.split.boundary[0]];
+  client->plan.link_trial.limited =
       link_ns > 0 && static_cast<double>(problem.link_start_ns + link_ns) >= kLinkLimited * client->share.predicted_ns;
   Split alone;
   alone.server_count = client->server_count;
   for (std::uint32_t& boundary : alone.boundary) boundary = problem.row_count;
   predict_split(problem, &alone);
-  client->alone_ns = client->share.local_ns = static_cast<double>(alone.time_ns);
+  client->frame.alone_ns = client->share.local_ns = static_cast<double>(alone.time_ns);
   // Reports the device's time for all of the light.
   if (by_effect)
     client->share.local_ns += static_cast<double>(problem.device_ns[problem.row_count]) * (1 / own.part - 1);
-  auto rows_of = [&](std::uint32_t i) { return client->split.boundary[i + 1] - client->split.boundary[i]; };
+  auto rows_of = [&](std::uint32_t i) { return client->plan.split.boundary[i + 1] - client->plan.split.boundary[i]; };
   std::uint32_t largest = 0;
   for (std::uint32_t i = 1; i < client->server_count; ++i)
     if (rows_of(i) > rows_of(largest)) largest = i;
   for (std::uint32_t i = 0; i < client->server_count; ++i) {
     RemoteServer* server = &client->servers[i];
-    if (server->phase != ServerPhase::ready) continue;  // for others, the overture's figure stands
-    server->ns_per_byte = static_cast<double>(client->model.servers[i].ns_per_byte.value);
+    if (server->overture.phase != ServerPhase::ready) continue;  // for others, the overture's figure stands
+    server->link.ns_per_byte = static_cast<double>(client->plan.model.servers[i].ns_per_byte.value);
     if (i == largest) want_coarse(client, client->share.predicted_ns);
-    ask_for_rows(client, server, client->split.boundary[i], client->split.boundary[i + 1], &problem);
-    client->request.coarse_first = false;
+    ask_for_rows(client, server, client->plan.split.boundary[i], client->plan.split.boundary[i + 1], &problem);
+    client->frame.request.coarse_first = false;
   }
-  client->joined = true;
+  client->frame.joined = true;
   if (by_effect) ask_for_light(client);
 }
 
 void let_join(Client* client) {
   if (!client->options.has_scene) return ask_idle_servers(client);
-  if (client->complete || client->unchanged) return;
+  if (client->frame.complete || client->frame.unchanged) return;
   if (!divides_rows(*client)) return ask_for_light(client);
   const bool by_effect = client->light.by_effect;
   bool any = false;
   for (std::uint32_t i = 0; i < client->server_count; ++i) {
-    if (!by_effect && client->servers[i].phase == ServerPhase::probing) finish_probe(client, &client->servers[i]);
-    any = any || client->servers[i].phase == ServerPhase::ready;
+    if (!by_effect && client->servers[i].overture.phase == ServerPhase::probing)
+      finish_probe(client, &client->servers[i]);
+    any = any || client->servers[i].overture.phase == ServerPhase::ready;
   }
   if (!by_effect) probe_servers(client);
-  if (client->joined || !any) return;
-  if (client->held ? wants_quiet(*client)
-                   : !is_settled(*client) && client->merge.next_row < client->settings.height / 4)
+  if (client->frame.joined || !any) return;
+  if (client->frame.held ? wants_quiet(*client)
+                         : !is_settled(*client) && client->picture.merge.next_row < client->settings.height / 4)
     return;
   share_rows(client);
 }
@@ -244,11 +250,11 @@ namespace {
 // A link is at least as fast as its bytes came: corrects estimates below that.
 void measure_own_links(Client* client) {
   for (std::uint32_t i = 0; i < client->server_count; ++i) {
-    const ServerFrame& f = client->servers[i].frame;
+    const ServerFrame& f = client->servers[i].rows.frame;
     double ns = static_cast<double>(f.heard_ns - f.first_ns), bytes = static_cast<double>(f.bytes_behind);
-    if (bytes == 0 || ns < kGapsMin * static_cast<double>(client->arrivals.gap_ns_max)) continue;
-    if (ns < bytes * static_cast<double>(client->model.servers[i].ns_per_byte.value))
-      observe_transfer(&client->model, i, bytes, ns);
+    if (bytes == 0 || ns < kGapsMin * static_cast<double>(client->frame.arrivals.gap_ns_max)) continue;
+    if (ns < bytes * static_cast<double>(client->plan.model.servers[i].ns_per_byte.value))
+      observe_transfer(&client->plan.model, i, bytes, ns);
   }
 }
 
@@ -258,15 +264,15 @@ void measure_own_links(Client* client) {
 void bound_own_links(Client* client) {
   for (std::uint32_t i = 0; i < client->server_count; ++i) {
     RemoteServer* server = &client->servers[i];
-    Smoothed* ns_per_byte = &client->model.servers[i].ns_per_byte;
-    double ns = static_cast<double>(server->frame.heard_ns - server->frame.asked_ns);
-    double bytes = static_cast<double>(server->frame.bytes_behind);
+    Smoothed* ns_per_byte = &client->plan.model.servers[i].ns_per_byte;
+    double ns = static_cast<double>(server->rows.frame.heard_ns - server->rows.frame.asked_ns);
+    double bytes = static_cast<double>(server->rows.frame.bytes_behind);
     bool disproved = kDisproved * ns < bytes * static_cast<double>(ns_per_byte->value);
-    if (server->phase != ServerPhase::ready || bytes == 0 || !disproved) continue;
+    if (server->overture.phase != ServerPhase::ready || bytes == 0 || !disproved) continue;
     *ns_per_byte = Smoothed();
     smooth(ns_per_byte, ns / bytes);
-    observe_own_link(&client->model, ns / bytes);
-    server->scaled = kUnsound;
+    observe_own_link(&client->plan.model, ns / bytes);
+    server->link.scaled = kUnsound;
   }
 }
 
@@ -283,17 +289,17 @@ double chunk_part(const ServerModel& model, const ServerFrame& f) {
 }
 
 double shared_link_ns(const Client& client, const ServerFrame& f) {
-  return static_cast<double>(f.bytes) * static_cast<double>(client.model.link_ns_per_byte.value);
+  return static_cast<double>(f.bytes) * static_cast<double>(client.plan.model.link_ns_per_byte.value);
 }
 
 LinkUse link_use(const Client& client) {
   LinkUse use;
   for (std::uint32_t i = 0; i < client.server_count; ++i) {
-    const ServerFrame& f = client.servers[i].frame;
+    const ServerFrame& f = client.servers[i].rows.frame;
     if (f.rows_come == 0) continue;
     const double sent_ns = shared_link_ns(client, f);
     ++use.server_count;
-    use.sent_ns += sent_ns, use.chunks_ns += sent_ns * chunk_part(client.model.servers[i], f);
+    use.sent_ns += sent_ns, use.chunks_ns += sent_ns * chunk_part(client.plan.model.servers[i], f);
     use.render_ns = std::max(use.render_ns, f.render_ns);
   }
   return use;
@@ -305,26 +311,27 @@ LinkUse link_use(const Client& client) {
 // at most one chunk of each other server.
 void measure_starts(Client* client) {
   const LinkUse use = link_use(*client);
-  const bool keeps_up = is_known(client->model.link_ns_per_byte) && use.sent_ns < kLightLink * use.render_ns;
+  const bool keeps_up = is_known(client->plan.model.link_ns_per_byte) && use.sent_ns < kLightLink * use.render_ns;
   for (std::uint32_t i = 0; i < client->server_count; ++i) {
-    const ServerFrame& f = client->servers[i].frame;
-    const ServerModel& model = client->model.servers[i];
-    if (client->servers[i].phase != ServerPhase::ready || f.open || f.rows_come < f.row_end - f.row_begin) continue;
+    const ServerFrame& f = client->servers[i].rows.frame;
+    const ServerModel& model = client->plan.model.servers[i];
+    if (client->servers[i].overture.phase != ServerPhase::ready || f.open || f.rows_come < f.row_end - f.row_begin)
+      continue;
     if (f.rows_come == 0 || !is_known(model.start_ns)) continue;
     const double transfer = static_cast<double>(f.bytes) * static_cast<double>(model.ns_per_byte.value);
     const double part = chunk_part(model, f);
     const double work = std::max(f.render_ns, transfer) + part * std::min(f.render_ns, transfer);
     const double latest = std::max(0.0, static_cast<double>(f.heard_ns - f.asked_ns) - work);
     const double seen = latest - static_cast<double>(f.unseen_ns), known = static_cast<double>(model.start_ns.value);
-    if (known > latest) observe_start(&client->model, i, latest);
+    if (known > latest) observe_start(&client->plan.model, i, latest);
     if (use.server_count == 1) {
-      if (known < seen) observe_start(&client->model, i, seen);
+      if (known < seen) observe_start(&client->plan.model, i, seen);
       continue;
     }
-    const double prepared = f.prepare_ns > 0 ? client->servers[i].round_trip_ns + f.prepare_ns : 0;
+    const double prepared = f.prepare_ns > 0 ? client->servers[i].link.round_trip_ns + f.prepare_ns : 0;
     const double waited = use.chunks_ns - part * shared_link_ns(*client, f);
     const double earliest = std::max(std::min(latest, prepared), keeps_up ? seen - waited : 0);
-    if (known < earliest) observe_start(&client->model, i, known + kRaise * (earliest - known));
+    if (known < earliest) observe_start(&client->plan.model, i, known + kRaise * (earliest - known));
   }
 }
 
@@ -340,7 +347,7 @@ double rate_of(const ServerFrame& f) {
 void measure_link(Client* client) {
   measure_starts(client);
   bound_own_links(client);
-  const Arrivals& a = client->arrivals;
+  const Arrivals& a = client->frame.arrivals;
   double ns = static_cast<double>(a.last_ns - a.first_ns), bytes = static_cast<double>(a.bytes);
   if (bytes == 0 || ns < kGapsMin * static_cast<double>(a.gap_ns_max)) return;
   measure_own_links(client);
@@ -348,49 +355,49 @@ void measure_link(Client* client) {
   double longest = 0;  // longest time of a server to trace its rows and then send them
   std::uint32_t count = 0, last = 0;
   for (std::uint32_t i = 0; i < client->server_count; ++i) {
-    const ServerFrame& f = client->servers[i].frame;
-    if (f.rows_come == 0 || client->servers[i].phase != ServerPhase::ready) continue;
+    const ServerFrame& f = client->servers[i].rows.frame;
+    if (f.rows_come == 0 || client->servers[i].overture.phase != ServerPhase::ready) continue;
     rate += rate_of(f);
     const double sent_ns =
-        static_cast<double>(f.bytes) * static_cast<double>(client->model.servers[i].ns_per_byte.value);
+        static_cast<double>(f.bytes) * static_cast<double>(client->plan.model.servers[i].ns_per_byte.value);
     longest = std::max(longest, f.render_ns + sent_ns);
     ++count, last = i;
   }
-  Smoothed* link = &client->model.link_ns_per_byte;
+  Smoothed* link = &client->plan.model.link_ns_per_byte;
   double before = is_known(*link) ? static_cast<double>(link->value) : 0;
   bool link_bound = rate > 0 && ns / bytes * rate > kLinkBound, better = ns / bytes < before;
   // Servers start and end at different times, which stretches the time between their first and last rows.
   if (count > 1 && ns < kLinkBound * longest) link_bound = false;
   if (count == 0 || !(link_bound || better)) return;
   smooth(link, ns / bytes);
-  if (count == 1 && link_bound) observe_transfer(&client->model, last, bytes, ns);
+  if (count == 1 && link_bound) observe_transfer(&client->plan.model, last, bytes, ns);
   if (!(before > 0)) return;
   // Each link is measured separately once its figure has become doubtful.
   double factor = static_cast<double>(link->value) / before;
   if (count == 1) {
-    if (link_bound) client->servers[last].scaled *= factor;
+    if (link_bound) client->servers[last].link.scaled *= factor;
     return;
   }
   for (std::uint32_t i = 0; i < client->server_count; ++i) {
-    scale(&client->model.servers[i].ns_per_byte, factor);
-    client->servers[i].scaled *= factor;
+    scale(&client->plan.model.servers[i].ns_per_byte, factor);
+    client->servers[i].link.scaled *= factor;
   }
 }
 
 void try_link(Client* client) {
-  LinkTrial* trial = &client->link_trial;
-  Smoothed* link = &client->model.link_ns_per_byte;
+  LinkTrial* trial = &client->plan.link_trial;
+  Smoothed* link = &client->plan.model.link_ns_per_byte;
   std::uint32_t count = 0;
-  for (std::uint32_t i = 0; i < client->server_count; ++i) count += client->servers[i].frame.rows_come > 0;
+  for (std::uint32_t i = 0; i < client->server_count; ++i) count += client->servers[i].rows.frame.rows_come > 0;
   if (!trial->limited || count < 2 || !is_known(*link)) return;
   const float before = trial->before;
   trial->before = 0;
   if (client->share.measured_ns > kLinkKept * client->share.predicted_ns) {
     if (before == 0) return;
     scale(link, static_cast<double>(before / link->value));
-    trial->rests_until = client->frames_with_servers + trial->rest;
+    trial->rests_until = client->plan.frames_with_servers + trial->rest;
     trial->rest = std::min(2 * trial->rest, kLinkRestMax);
-  } else if (client->frames_with_servers >= trial->rests_until) {
+  } else if (client->plan.frames_with_servers >= trial->rests_until) {
     if (before > 0) trial->rest = 1;
     trial->before = link->value;
     scale(link, kLinkFaster);

@@ -179,7 +179,7 @@ Status start_client(Servers* servers, Renderer* renderer, bool small_pixels, boo
                               s->addresses.data(), static_cast<std::uint32_t>(s->addresses.size()),
                               &renderer->memory.frame, &s->client));
   for (std::uint32_t i = 0; i < s->client.server_count; ++i)
-    s->client.servers[i].lied = s->client.servers[i].told = s->lied[i];
+    s->client.servers[i].overture.lied = s->client.servers[i].overture.told = s->lied[i];
   return success();
 }
 
@@ -222,14 +222,14 @@ ServersState state_of(const Servers& servers) {
   const ConnectedServers& s = connected(servers);
   const Client& client = s.client;
   ServersState state;
-  state.in_use =
-      s.is_thin || std::any_of(client.servers, client.servers + client.server_count,
-                               [](const RemoteServer& server) { return server.phase >= ServerPhase::probing; });
+  state.in_use = s.is_thin ||
+                 std::any_of(client.servers, client.servers + client.server_count,
+                             [](const RemoteServer& server) { return server.overture.phase >= ServerPhase::probing; });
   state.cut_off = is_cut_off(client);
   state.disputed = client.verifier.disputed;
-  state.rows_done = client.merge.row_count_done;
+  state.rows_done = client.picture.merge.row_count_done;
   const FrameOutlook outlook = outlook_of(client);
-  state.coarse_shown = client.coarse_shown;
+  state.coarse_shown = client.coarse.shown;
   state.left_ns = outlook.left_ns, state.anew_ns = gave_nothing(s.last) ? 0 : outlook.anew_ns;
   return state;
 }
@@ -238,7 +238,7 @@ MergedPicture merged_picture(const Servers& servers) {
   CHECK(connected(servers).started);
   const Client& client = connected(servers).client;
   WireFormat format = client.options.format;
-  return {client.pixels.data, static_cast<int>(client.settings.width * pixel_bytes(format)),
+  return {client.picture.pixels.data, static_cast<int>(client.settings.width * pixel_bytes(format)),
           format == WireFormat::rgb565 ? kRgb565 : kRgb888};
 }
 
@@ -251,7 +251,7 @@ void show_own_picture(Servers* servers, const Renderer& renderer) {
   MergedPicture merged = merged_picture(*servers);
   int height = static_cast<int>(renderer.settings.height);
   pack_rows(renderer.image.data, static_cast<int>(renderer.settings.width), height, 0, height, renderer.view.exposure,
-            merged.format, Rotation::none, client.options.dither, client.pixels.data, merged.line_bytes);
+            merged.format, Rotation::none, client.options.dither, client.picture.pixels.data, merged.line_bytes);
 }
 
 void add_server_lines(const ConnectedServers& s, HudText* text) {
@@ -259,13 +259,14 @@ void add_server_lines(const ConnectedServers& s, HudText* text) {
   const FrameShare& f = s.last;
   for (std::uint32_t i = 0; i < client.server_count; ++i) {
     const RemoteServer& server = client.servers[i];
-    if (f.by_effect && server.phase == ServerPhase::ready && f.row_end[i] == 0)
+    if (f.by_effect && server.overture.phase == ServerPhase::ready && f.row_end[i] == 0)
       add_hud_line(text, "%s light  %.1f kB", server.address.text, static_cast<double>(f.server_bytes[i]) * 1e-3);
-    else if (server.phase == ServerPhase::ready && f.row_end[i] > 0)
+    else if (server.overture.phase == ServerPhase::ready && f.row_end[i] > 0)
       add_hud_line(text, "%s rows %u-%u, sent %u  %.1f kB", server.address.text, f.row_begin[i], f.row_end[i] - 1,
                    f.server_rows[i], static_cast<double>(f.server_bytes[i]) * 1e-3);
     else
-      add_hud_line(text, "%s %s", server.address.text, server.lied ? "sent wrong pixels" : phase_text(server.phase));
+      add_hud_line(text, "%s %s", server.address.text,
+                   server.overture.lied ? "sent wrong pixels" : phase_text(server.overture.phase));
   }
 }
 
@@ -319,7 +320,7 @@ ServersTotals totals_of(const Servers& servers) {
                          value_or(m.transfer_ns, 0), value_or(m.add_ns, 0)};
   totals.caught_row = 1;
   for (const RemoteServer& server : s.client.servers)
-    if (server.checks.rows > 0 && !server.lied)
+    if (server.checks.rows > 0 && !server.overture.lied)
       totals.caught_row = std::min(totals.caught_row, server.checks.caught_row);
   return totals;
 }
@@ -353,7 +354,7 @@ std::size_t client_tls_need(const ConnectedServers& s) {
 
 void end_client(ConnectedServers* servers) {
   for (std::uint32_t i = 0; servers->started && i < servers->client.server_count; ++i)
-    servers->lied[i] = servers->client.servers[i].lied;
+    servers->lied[i] = servers->client.servers[i].overture.lied;
   if (servers->started) close_client(&servers->client);
   if (servers->client_link) servers->client_link->backend->close_all(servers->client_link);
   servers->client_link = nullptr;

@@ -31,20 +31,20 @@ void write_proof(const Client& client, std::uint32_t row, std::uint32_t column, 
   char was[8], is[8];
   write_pixel_text(sent, client.options.format, was);
   write_pixel_text(right, client.options.format, is);
-  std::snprintf(text, 160, "frame %u, row %u, column %u is %s instead of %s", client.request.frame, row, column, was,
-                is);
+  std::snprintf(text, 160, "frame %u, row %u, column %u is %s instead of %s", client.frame.request.frame, row, column,
+                was, is);
 }
 
 // Number of pixels to check in this frame for `sender_count` servers. A frame with a wrong pixel is checked again.
 std::uint32_t due_count(Client* client, std::uint32_t sender_count) {
   Verifier* v = &client->verifier;
   if (v->check_count > 0) return std::max(static_cast<std::uint32_t>(v->check_count), sender_count);
-  if (v->frame == client->request.frame) return std::max(v->due_count, sender_count);
-  v->frame = client->request.frame;
+  if (v->frame == client->frame.request.frame) return std::max(v->due_count, sender_count);
+  v->frame = client->frame.request.frame;
   double pixel_ns = kLonePixelFactor * device_pixel_ns(*client);
   if (is_known(v->check_ns)) pixel_ns = static_cast<double>(v->check_ns.value);
   pixel_ns += preparing_left_ns(*client);
-  double frame_ns = static_cast<double>(client_now_ns(*client) - client->begin_ns);
+  double frame_ns = static_cast<double>(client_now_ns(*client) - client->frame.begin_ns);
   // If the pixel cost is unknown because the device renders none, one pixel measures it.
   double paid = pixel_ns > 0 ? kCheckShare * frame_ns / pixel_ns : 1;
   return v->due_count = due_checks(&v->schedule, paid, &v->random);
@@ -55,8 +55,8 @@ std::uint32_t pick_pixels(Client* client, std::uint32_t server, std::uint32_t co
   Verifier* v = &client->verifier;
   if (count == 0) return span_count;
   std::uint32_t rows = 0, width = client->settings.width;
-  for (std::uint32_t row = 0; row < client->merge.rows.count; ++row)
-    if (client->merge.rows[row].state == RowState::server && client->merge.rows[row].server == server)
+  for (std::uint32_t row = 0; row < client->picture.merge.rows.count; ++row)
+    if (client->picture.merge.rows[row].state == RowState::server && client->picture.merge.rows[row].server == server)
       v->rows[rows++] = static_cast<std::uint16_t>(row);
   CHECK_LE(span_count + count, v->spans.count);
   draw_distinct(&v->random, rows * width, count, v->picks.data);
@@ -86,7 +86,8 @@ void render_pixels(Renderer* renderer, Client* client, std::uint32_t count) {
     const PixelCheck& p = *static_cast<PixelCheck*>(context);
     const Client& own = *p.client;
     pack_spans(p.renderer->image.data, static_cast<int>(own.settings.width), batch.spans, batch.span_count,
-               own.request.exposure, pixel_format(own.options.format), own.options.dither, own.verifier.pixels.data);
+               own.frame.request.exposure, pixel_format(own.options.format), own.options.dither,
+               own.verifier.pixels.data);
   };
   source.finished = [](void* context, const SpanBatch& batch) {
     CHECK_GT(batch.span_count, 0u);
@@ -129,11 +130,12 @@ void count_checks(Client* client, std::uint32_t server, std::uint32_t rows, std:
 
 // Divides the missing rows among the remaining servers by speed; the device keeps the upper ones.
 void share_missing_rows(Client* client) {
-  std::uint32_t begin = client->merge.next_row, end = client->settings.height;
-  while (end > begin && client->merge.rows[end - 1].state != RowState::missing) --end;
+  std::uint32_t begin = client->picture.merge.next_row, end = client->settings.height;
+  while (end > begin && client->picture.merge.rows[end - 1].state != RowState::missing) --end;
   auto speed_of = [&](std::uint32_t i) {
-    const double slowness = server_slowness(client->model.servers[i]);
-    bool usable = client->servers[i].phase == ServerPhase::ready && !client->servers[i].frame.open && slowness > 0;
+    const double slowness = server_slowness(client->plan.model.servers[i]);
+    bool usable =
+        client->servers[i].overture.phase == ServerPhase::ready && !client->servers[i].rows.frame.open && slowness > 0;
     return usable ? 1 / slowness : 0;
   };
   double sum = 1, so_far = 1, rows = end - begin;
@@ -152,7 +154,7 @@ void share_missing_rows(Client* client) {
 bool check_pixels(Renderer* renderer, Client* client) {
   Verifier* v = &client->verifier;
   std::uint32_t pixels[kServerCountMax] = {}, counts[kServerCountMax] = {}, ends[kServerCountMax] = {}, senders = 0;
-  for (const MergeRow& row : client->merge.rows)
+  for (const MergeRow& row : client->picture.merge.rows)
     if (row.state == RowState::server) pixels[row.server] += client->settings.width;
   for (std::uint32_t i = 0; i < client->server_count; ++i) {
     senders += pixels[i] > 0;
@@ -163,7 +165,7 @@ bool check_pixels(Renderer* renderer, Client* client) {
   allot_checks(&v->random, due, pixels, client->server_count, counts);
   for (std::uint32_t i = 0; i < client->server_count; ++i)
     ends[i] = span_count = pick_pixels(client, i, counts[i], span_count);
-  if (span_count > 0 && !client->prepared) prepare_device(renderer, client);
+  if (span_count > 0 && !client->frame.prepared) prepare_device(renderer, client);
   if (span_count > 0) render_pixels(renderer, client, span_count);
   bool honest = true;
   for (std::uint32_t i = 0; i < client->server_count; ++i) {
@@ -213,7 +215,7 @@ Status make_verifier(int check_count, bool (*entropy)(void*, std::size_t), const
 }
 
 void begin_checks(Client* client) {
-  for (std::uint32_t i = 0; i < client->server_count; ++i) client->servers[i].is_witness = false;
+  for (std::uint32_t i = 0; i < client->server_count; ++i) client->servers[i].witness.is_asked = false;
   client->verifier.is_asking = client->verifier.again = client->verifier.dispute.open = false;
 }
 
@@ -221,7 +223,7 @@ bool agrees_with_device(Client* client, RemoteServer* server, std::uint32_t row_
   if (client->verifier.check_count == 0 || client->light.by_effect) return true;
   const std::size_t bytes = pixel_bytes(client->options.format);
   for (std::uint32_t row = row_begin; row < row_end; ++row) {
-    if (client->merge.rows[row].state != RowState::device) continue;
+    if (client->picture.merge.rows[row].state != RowState::device) continue;
     const std::uint8_t *right = merged_row(*client, row), *sent = picture_row(server->decoder->state, row);
     const std::uint32_t width = client->settings.width, tolerance = pixel_tolerance(*client);
     if (pixels_close(client->options.format, right, sent, width, tolerance)) continue;
@@ -236,12 +238,12 @@ bool agrees_with_device(Client* client, RemoteServer* server, std::uint32_t row_
 }
 
 void drop_liar(Client* client, RemoteServer* server, const char* proof) {
-  CHECK(proof != nullptr && !server->lied);
-  server->told = true;  // the line below gives the reason
+  CHECK(proof != nullptr && !server->overture.lied);
+  server->overture.told = true;  // the line below gives the reason
   lose_server(client, server, "");
-  server->lied = true;
+  server->overture.lied = true;
   ++client->share.lies;
-  discard_rows(&client->merge, index_of(*client, server));
+  discard_rows(&client->picture.merge, index_of(*client, server));
   if (!client->options.log) return;
   char line[400], before[100] = "";
   if (server->checks.rows > 0)

@@ -23,7 +23,7 @@ std::size_t row_bytes(const Client& client) {
 std::uint32_t ready_servers(Client* client, std::uint32_t servers[kServerCountMax]) {
   std::uint32_t count = 0;
   for (std::uint32_t i = 0; i < client->server_count; ++i)
-    if (client->servers[i].phase == ServerPhase::ready) servers[count++] = i;
+    if (client->servers[i].overture.phase == ServerPhase::ready) servers[count++] = i;
   for (std::uint32_t i = 0; i < count; ++i)
     std::swap(servers[i], servers[i + random_below(&client->verifier.random, count - i)]);
   return count;
@@ -32,8 +32,9 @@ std::uint32_t ready_servers(Client* client, std::uint32_t servers[kServerCountMa
 std::uint32_t random_row_of(Client* client, std::uint32_t server, std::uint32_t row_count) {
   std::uint32_t left = random_below(&client->verifier.random, row_count), row = 0;
   for (;; ++row) {
-    CHECK_LT(row, client->merge.rows.count);
-    if (client->merge.rows[row].state == RowState::server && client->merge.rows[row].server == server && left-- == 0)
+    CHECK_LT(row, client->picture.merge.rows.count);
+    if (client->picture.merge.rows[row].state == RowState::server && client->picture.merge.rows[row].server == server &&
+        left-- == 0)
       return row;
   }
 }
@@ -41,11 +42,11 @@ std::uint32_t random_row_of(Client* client, std::uint32_t server, std::uint32_t 
 void ask_witness(Client* client, std::uint32_t witness, std::uint32_t row) {
   CHECK(witness < client->server_count && row < client->settings.height);
   RemoteServer* server = &client->servers[witness];
-  server->frame_before = server->frame;
-  server->frame_before.open = false;  // its unsent rows were left to a later request
+  server->witness.frame_before = server->rows.frame;
+  server->witness.frame_before.open = false;  // its unsent rows were left to a later request
   request_rows(client, server, row, row + 1);
-  if (server->phase != ServerPhase::ready) return;  // just lost
-  server->is_witness = true;
+  if (server->overture.phase != ServerPhase::ready) return;  // just lost
+  server->witness.is_asked = true;
   client->verifier.is_asking = true;
 }
 
@@ -63,16 +64,17 @@ bool answers_are_here(Client* client) {
   bool late = is_late(*client);
   for (std::uint32_t i = 0; i < client->server_count; ++i) {
     const RemoteServer& server = client->servers[i];
-    if (server.is_witness && server.frame.open && server.phase == ServerPhase::ready && !late) return false;
+    if (server.witness.is_asked && server.rows.frame.open && server.overture.phase == ServerPhase::ready && !late)
+      return false;
   }
   for (std::uint32_t i = 0; i < client->server_count; ++i) {
     RemoteServer* server = &client->servers[i];
-    if (!server->is_witness) continue;
-    server->is_witness = false;
-    if (v->dispute.open && v->dispute.judge == i) v->dispute.judged = server->frame.rows_come > 0;
-    std::uint64_t bytes = server->frame.bytes, rows_bytes = server->frame.row_bytes;
-    server->frame = server->frame_before;
-    server->frame.bytes = bytes, server->frame.row_bytes = rows_bytes;
+    if (!server->witness.is_asked) continue;
+    server->witness.is_asked = false;
+    if (v->dispute.open && v->dispute.judge == i) v->dispute.judged = server->rows.frame.rows_come > 0;
+    std::uint64_t bytes = server->rows.frame.bytes, rows_bytes = server->rows.frame.row_bytes;
+    server->rows.frame = server->witness.frame_before;
+    server->rows.frame.bytes = bytes, server->rows.frame.row_bytes = rows_bytes;
   }
   smooth(&v->check_ns, static_cast<double>(client_now_ns(*client) - v->ask_ns));
   v->is_asking = false;
@@ -84,7 +86,7 @@ void count_row(Client* client, std::uint32_t server) {
   ++checks->checked;
   ++client->share.checked[server];
   SpotCheck odds;
-  odds.rows = count_rows(client->merge, server), odds.width = 1, odds.wrong_rows = 1, odds.pixels = 1;
+  odds.rows = count_rows(client->picture.merge, server), odds.width = 1, odds.wrong_rows = 1, odds.pixels = 1;
   checks->caught_row_last = catch_probability(odds);
   CHECK(checks->caught_row_last >= 0 && checks->caught_row_last <= 1);
   checks->caught_row = either_probability(checks->caught_row, checks->caught_row_last);
@@ -96,7 +98,7 @@ void ask_all(Client* client) {
   if (count < 2) return;
   client->verifier.ask_ns = client_now_ns(*client);
   for (std::uint32_t k = 0; k < count; ++k) {
-    std::uint32_t server = order[k], witness = order[(k + 1) % count], rows = count_rows(client->merge, server);
+    std::uint32_t server = order[k], witness = order[(k + 1) % count], rows = count_rows(client->picture.merge, server);
     if (rows > 0) ask_witness(client, witness, random_row_of(client, server, rows));
   }
 }
@@ -106,10 +108,10 @@ bool is_due(Client* client) {
   Verifier* v = &client->verifier;
   bool again = v->again;
   v->again = false;
-  if (v->frame == client->request.frame) return again;
-  v->frame = client->request.frame;
+  if (v->frame == client->frame.request.frame) return again;
+  v->frame = client->frame.request.frame;
   if (v->check_count > 0 || !is_known(v->check_ns)) return true;
-  double frame_ns = static_cast<double>(client_now_ns(*client) - client->begin_ns);
+  double frame_ns = static_cast<double>(client_now_ns(*client) - client->frame.begin_ns);
   return due_checks(&v->schedule, kCheckShare * frame_ns / static_cast<double>(v->check_ns.value), &v->random) > 0;
 }
 
@@ -136,7 +138,7 @@ void tell_dispute(Client* client) {
                   "servers %s and %s sent different pixels for row %u of frame %u, and without the scene this device "
                   "cannot tell which is right: add a third --server, or enough --memory for the scene",
                   client->servers[v->dispute.server].address.text, client->servers[v->dispute.other].address.text,
-                  v->dispute.row, client->request.frame);
+                  v->dispute.row, client->frame.request.frame);
     client->options.log(client->options.log_context, line);
   }
   v->disputed = true;
@@ -157,7 +159,8 @@ void judge(Client* client) {
   for (int k = 0; k < 2; ++k) agrees[k] = rows_agree(*client, v->versions[k].data, third);
   if (agrees[0] == agrees[1]) return;
   char proof[160];
-  std::snprintf(proof, sizeof proof, "frame %u, row %u differs from two other servers", client->request.frame, d->row);
+  std::snprintf(proof, sizeof proof, "frame %u, row %u differs from two other servers", client->frame.request.frame,
+                d->row);
   drop_liar(client, &client->servers[agrees[0] ? d->other : d->server], proof);
   d->open = false;
   v->again = true;
@@ -181,11 +184,11 @@ void open_dispute(Client* client, std::uint32_t row, std::uint32_t server, std::
 void compare_with_others(Client* client, RemoteServer* server, std::uint32_t row_begin, std::uint32_t row_end) {
   if (client->verifier.check_count == 0) return;
   for (std::uint32_t row = row_begin; row < row_end; ++row) {
-    const MergeRow& merged = client->merge.rows[row];
+    const MergeRow& merged = client->picture.merge.rows[row];
     if (merged.state != RowState::server || merged.server == index_of(*client, server)) continue;
     if (!rows_agree(*client, merged_row(*client, row), picture_row(server->decoder->state, row)))
       open_dispute(client, row, merged.server, index_of(*client, server));
-    else if (server->is_witness)
+    else if (server->witness.is_asked)
       count_row(client, merged.server);
   }
 }
@@ -205,7 +208,7 @@ bool is_witnessed(Client* client) {
   if (v->again) return false;
   for (std::uint32_t i = 0; i < client->server_count; ++i) {
     ServerChecks* checks = &client->servers[i].checks;
-    checks->rows += count_rows(client->merge, i);
+    checks->rows += count_rows(client->picture.merge, i);
     if (client->share.checked[i] == 0) checks->caught_row_last = 0;
   }
   return true;

@@ -115,7 +115,7 @@ const FrameShare& EncryptedRig::frame(double seconds) {
   REQUIRE(render_frame(&device->renderer, &client, seconds).ok);
   Renderer& renderer = whole->renderer;
   REQUIRE(render_frame(&renderer, seconds).ok);
-  std::vector<std::uint8_t> merged(client.pixels.begin(), client.pixels.end()), own(merged.size());
+  std::vector<std::uint8_t> merged(client.picture.pixels.begin(), client.picture.pixels.end()), own(merged.size());
   pack_rows(renderer.image.data, 64, 48, 0, 48, renderer.view.exposure, kRgb888, Rotation::none, false, own.data(),
             64 * 3);
   CHECK(merged == own);

@@ -49,7 +49,7 @@ struct EncryptedRig {
   void stop_server();
   // Renders a frame and compares it with the device's own.
   const FrameShare& frame(double seconds);
-  bool in_use() const { return client.servers[0].phase == ServerPhase::ready; }
+  bool in_use() const { return client.servers[0].overture.phase == ServerPhase::ready; }
   void frames_until_in_use();
   static bool has(const std::vector<std::string>& log, const std::string& text);
 };
