@@ -143,12 +143,6 @@ void format_bounds(const Budget& budget, const char* error_name, char (&text)[kB
 
 }  // namespace
 
-Status check_budget_options(const BudgetOptions& options) {
-  if (!options.front.empty() && !chooses_settings(options))
-    return failure("--front is the file that --budget-ms and --flip-max choose from: add one of them, or drop it");
-  return success();
-}
-
 Status open_scene_with_front(const CommonOptions& common, const FrontSource& from,
                              const std::function<std::size_t(const Settings&)>& output_bytes, OpenScene* opened,
                              OpenFront* f) {

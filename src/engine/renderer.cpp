@@ -314,7 +314,7 @@ bool probe_exposure(Renderer* renderer, ExposureProbe* p, std::uint32_t pixel_co
                 begin = p->next;
   FrameData frame = renderer->frame;
   frame.first_hits = nullptr;
-  if (frame.mask & (bit(Effect::selective) | bit(Effect::undersampling))) frame.trace_strip = nullptr;
+  if (frame.mask & kInterpolatingEffects) frame.trace_strip = nullptr;
   Tracer tracer = make_tracer(frame);
   tracer.light_entries = renderer->tracers[0].light_entries;
   for (; p->next < count && p->next - begin < pixel_count_max; ++p->next) {

@@ -7,6 +7,7 @@
 #include "base/check.h"
 #include "base/span.h"
 #include "plan/place_light_polygons.h"
+#include "plan/resolve.h"
 #include "scene/animate.h"
 #include "shade/interleaved.h"
 #include "shade/lattice.h"
@@ -100,8 +101,7 @@ Status plan_memory_with(const Scene& scene, const Settings& settings, const Effe
            is_interleaved(effects.mask)
                ? arena_need<InterleavedPixel>(std::size_t(settings.threads) * kept_pixel_count(settings))
                : 0);
-  add_part(plan, "undersampling", ArenaKind::persistent,
-           lattice_need(settings));
+  add_part(plan, "undersampling", ArenaKind::persistent, lattice_need(settings));
   add_part(plan, "spans", ArenaKind::persistent,
            arena_need<Span>(settings.height) + arena_need<std::uint64_t>(settings.height));
   std::size_t pixel_count = static_cast<std::size_t>(settings.width) * settings.height;
@@ -139,11 +139,7 @@ Status plan_memory(const Scene& scene, const Settings& settings, const EffectPla
                    const char** without_coherence) {
   const bool changes = (has(effects.mask, Effect::animation) && is_animated(scene)) || storage.recolorable > 0;
   bool wanted = settings.coherence == CoherenceMode::on || (settings.coherence == CoherenceMode::automatic && changes);
-  const char* mixes = is_interleaved(effects.mask) && settings.coherence_by_tables
-                          ? "the tables do not track which pixels share light"
-                      : has(effects.mask, Effect::selective)     ? "selective rendering interpolates pixels"
-                      : has(effects.mask, Effect::undersampling) ? "undersampling reconstructs pixels"
-                                                                 : nullptr;
+  const char* mixes = unfollowed_because(effects.mask, settings.coherence_by_tables);
   wanted = wanted && !mixes;
   const char* why = mixes                                      ? mixes
                     : settings.coherence == CoherenceMode::off ? "coherence is off"
