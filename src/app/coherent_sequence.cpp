@@ -15,13 +15,6 @@ double share(const CoherentSequence& s) {
 
 }  // namespace
 
-Status check_coherence(const char* because, CommonOptions* o) {
-  if (!because) return success();
-  if (o->coherence == "on") return failure("--coherence on has no effect with %s", because);
-  if (o->coherence == "auto") o->coherence = "off";
-  return success();
-}
-
 Status render_next(Renderer* renderer, double seconds, CoherentSequence* sequence, bool* complete) {
   RETURN_IF_ERROR(render_frame(renderer, changes_at(seconds, &interrupted), complete));
   const CoherenceState& state = renderer->history.state;

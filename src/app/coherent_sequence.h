@@ -11,9 +11,6 @@ struct CoherentSequence {
   const char* whole_because = nullptr;  // why the last frame after the first was traced whole; null: none was
 };
 
-// If coherence has no effect, for the reason `because` (null: it has one), refuses "on" and turns "auto" into "off".
-Status check_coherence(const char* because, CommonOptions* options);
-
 // Renders the changes of the next frame; an interrupt ends it early.
 Status render_next(Renderer* renderer, double seconds, CoherentSequence* sequence, bool* complete);
 

@@ -237,7 +237,8 @@ int lead(const RenderOptions& given) {
   const RenderOptions& options = job.options;
   if (!status.ok && interrupted) return kExitInterrupted;
   if (!status.ok) return report(status);
-  print_notes(o.scene);
+  const bool shows_hits = job.asked.aov != Aov::none && job.asked.aov != Aov::cost;
+  print_notes(o.scene, shows_hits ? options.aov.c_str() : nullptr);
   if (!job.servers)
     for (std::string& note : unexpected(options, job.asked, o.scene.renderer)) print_note(std::move(note));
   bool stopped = false;

@@ -3,9 +3,9 @@
 #include <cinttypes>
 #include <cmath>
 
-#include "app/coherent_sequence.h"
 #include "base/limit_list.h"
 #include "engine/pocketray.h"
+#include "plan/resolve.h"
 #include "scene/content_hash.h"
 #include "session/output.h"
 #include "session/resume.h"
@@ -45,35 +45,32 @@ std::string numbered_path(const std::string& path, std::uint32_t number) {
   return path.substr(0, dot) + digits + path.substr(dot);
 }
 
-// Refuses pictures that servers cannot send.
-Status check_shareable(const RenderOptions& o, const RenderRequest& request) {
-  if (o.servers.addresses.empty()) return success();
-  if (request.aov != Aov::none) return failure("--server sends only colours: drop --server or --aov");
-  if (stores_values(request.kind))
-    return failure(
-        "--server sends display levels but .pfm and .exr store radiance: drop --server, or write .png or .ppm");
-  return success();
-}
-
-Status check_budget_and_orbit(const RenderOptions& o, Aov aov) {
-  if (!(std::fabs(o.orbit_degrees) <= 360)) return failure("--orbit must lie in -360 … 360");
-  if (o.orbit_degrees != 0 && o.frames.empty())
-    return failure("--orbit turns the camera from frame to frame: add --frames 0:359, or use --turntable 360");
-  RETURN_IF_ERROR(check_budget_options(o.budget));
-  if (!chooses_settings(o.budget)) return success();
-  const char* option = option_that_chooses(o.budget);
-  if (!o.servers.addresses.empty())
-    return failure("%s changes settings per frame and servers cannot: drop %s or --server", option, option);
-  if (aov != Aov::none) return failure("%s renders only colours: drop %s or --aov", option, option);
-  return success();
-}
-
-// Coherence is for sequences in colour.
-const char* incoherent_because(const RenderOptions& o, Aov aov) {
-  if (o.turntable > 0) return "--turntable, which moves the camera: drop --coherence";
-  if (!o.crop.empty()) return "--crop: drop --crop or --coherence";
-  if (o.frames.empty()) return "a single frame: add --frames 0:99, or drop --coherence";
-  return aov != Aov::none ? "--aov: drop --aov or --coherence" : nullptr;
+// `output`: -o as given.
+Uses uses_of(const RenderOptions& o, const RenderRequest& request, const char* output) {
+  const bool sequence = request.sequence.given, animation = request.animation != AnimationKind::none;
+  const bool numbered = sequence && !animation && o.output != "-";
+  Uses uses;
+  uses.add(Use::servers, !o.servers.addresses.empty());
+  add_budget_uses(o.budget, &uses);
+  uses.add(Use::ranks, o.parts.team.size > 1);
+  uses.add(Use::frames, !o.frames.empty());
+  uses.add(Use::turntable, o.turntable > 0);
+  uses.add(Use::sequence, sequence);
+  uses.add(Use::numbered, numbered);
+  uses.add(Use::animation, animation, output);
+  uses.add(Use::still, numbered && o.turntable > 0);
+  uses.add(Use::output, o.output == "-" && !animation);
+  uses.add(Use::orbit, o.orbit_degrees != 0);
+  uses.add(Use::frame_rate, o.frames_per_second > 0);
+  uses.add(Use::resume, o.resume);
+  uses.add(Use::values, stores_values(request.kind));
+  uses.add(Use::raw, has_suffix(request.kind.c_str(), ".raw"));
+  uses.add(Use::aov, request.aov != Aov::none);
+  uses.add(Use::crop, !o.crop.empty());
+  uses.add(Use::rotate, o.rotation != 0);
+  uses.add(Use::dither, o.dither);
+  uses.add(Use::coherence, o.common.coherence == "on");
+  return uses;
 }
 
 std::vector<NamedFile> inputs_of(const RenderOptions& o) {
@@ -98,14 +95,7 @@ Status choose_kind(const RenderOptions& o, RenderRequest* request) {
 // Checks that each picture can be written, before rendering the first.
 Status check_paths(const RenderOptions& o, RenderRequest* request) {
   const FrameRange& s = request->sequence;
-  RETURN_IF_ERROR(choose_kind(o, request));
-  request->animation = animation_kind(request->kind);
-  if (request->animation != AnimationKind::none) {
-    if (!s.given) return failure("-o %.200s is an animation: add --frames 0:99 or --turntable 36", o.output.c_str());
-    return check_path(o, o.output, request);
-  }
-  if (o.output == "-" && s.given)
-    return failure("-o - is one file: add --format gif or apng for a sequence, or drop --frames and --turntable");
+  if (request->animation != AnimationKind::none) return check_path(o, o.output, request);
   RETURN_IF_ERROR(check_picture_path(request->kind));
   for (std::uint32_t frame = s.first; frame <= s.last; ++frame)
     RETURN_IF_ERROR(check_path(o, s.given ? numbered_path(o.output, frame) : o.output, request));
@@ -126,50 +116,16 @@ Status read_crop(const RenderOptions& o, RenderRequest* request) {
       box.left + box.width > static_cast<int>(width) || box.top + box.height > static_cast<int>(height))
     return failure("--crop is '%.100s': write X,Y,WxH, as 0,0,%ux%u, within the picture's %ux%u pixels", o.crop.c_str(),
                    (width + 1) / 2, (height + 1) / 2, width, height);
-  if (!o.servers.addresses.empty()) return failure("--server sends whole rows: drop --server or --crop");
-  if (const char* option = option_that_chooses(o.budget); chooses_settings(o.budget))
-    return failure("%s measures whole frames: drop %s or --crop", option, option);
-  if (o.rotation != 0) return failure("--crop cannot be rotated: drop --rotate or --crop");
   request->picture.crop = box;
   return success();
 }
 
-Status check_raw(const RenderOptions& o, const RenderRequest& request) {
-  if (has_suffix(request.kind.c_str(), ".raw")) return success();
-  const char* option = o.rotation != 0 ? "--rotate" : o.dither ? "--dither" : nullptr;
-  return option ? failure("%s is for .raw pictures: drop it, or write .raw", option) : success();
-}
-
-Status check_resume(const RenderOptions& o, const RenderRequest& request) {
-  if (keeps_journal(o, request))
-    return check_outputs(inputs_of(o), {{"-o", journal_path(o.output)}, {"--json", o.common.json}});
-  if (!o.resume) return success();
-  if (!o.servers.addresses.empty() || chooses_settings(o.budget))
-    return failure("--resume cannot tell that pictures match, with servers or a budget: drop it, or --server and %s",
-                   option_that_chooses(o.budget));
-  return failure("--resume is for sequences of numbered pictures: add --frames 0:99 or --turntable 36, and write .png");
-}
-
-// Ranks write files of their own.
-Status check_team(const RenderOptions& o, const RenderRequest& request) {
-  if (o.parts.team.size == 1) return success();
-  if (request.animation != AnimationKind::none)
-    return failure("-o %.200s is one file, written by one program: write .png under mpirun, or start without it",
-                   o.output.c_str());
-  if (!request.sequence.given)
-    return failure("one picture is rendered by one program: add --frames 0:99, or start it without mpirun");
-  if (!o.servers.addresses.empty() || chooses_settings(o.budget))
-    return failure("ranks share frames by themselves: drop --server and %s, or start without mpirun",
-                   option_that_chooses(o.budget));
-  return success();
+Status check_journal(const RenderOptions& o, const RenderRequest& request) {
+  if (!keeps_journal(o, request)) return success();
+  return check_outputs(inputs_of(o), {{"-o", journal_path(o.output)}, {"--json", o.common.json}});
 }
 
 Status check_frame_rate(const RenderOptions& o, const RenderRequest& request) {
-  if (o.frames_per_second > 0 && !request.sequence.given)
-    return failure("--fps is for sequences: add --frames 0:99 or --turntable 36");
-  if (o.frames_per_second > 0 && o.turntable > 0 && request.animation == AnimationKind::none)
-    return failure(
-        "--fps has no effect on numbered pictures at a fixed time: write .gif, .apng or .mp4, or drop --fps");
   Settings settings;
   RETURN_IF_ERROR(picture_size(o.common, &settings.width, &settings.height));
   const PixelBox box = box_to_write(request.picture, settings);
@@ -248,9 +204,6 @@ std::vector<std::string> unexpected(const RenderOptions& o, const RenderRequest&
                   sequence ? "the last frame, at" : "--time", last, duration > 0 ? std::fmod(last, duration) : 0);
     notes.push_back(text);
   }
-  const bool many = renderer.settings.samples_per_pixel > 1;
-  if (many && request.aov != Aov::none && request.aov != Aov::cost)
-    notes.push_back("--aov " + o.aov + " samples pixel centres; --samples is ignored");
   return notes;
 }
 
@@ -259,19 +212,22 @@ Status read_render_options(RenderOptions* o, RenderRequest* request) {
   if (o->turntable > 0) request->sequence = {0, o->turntable - 1, true};
   RETURN_IF_ERROR(parse_aov(o->aov, &request->aov));
   RETURN_IF_ERROR(parse_raw_format(o->raw_format, &request->picture.raw_format));
+  RETURN_IF_ERROR(choose_kind(*o, request));
+  request->animation = animation_kind(request->kind);
+  const std::string output = "-o " + o->output;
+  Uses uses = uses_of(*o, *request, output.c_str());
+  RETURN_IF_ERROR(check_uses(uses));
+  uses.add(Use::coherence, o->common.coherence == "auto");
+  if (!check_uses(uses).ok) o->common.coherence = "off";
   RETURN_IF_ERROR(check_paths(*o, request));
-  RETURN_IF_ERROR(check_team(*o, *request));
   if (!rotation_from_degrees(o->rotation, &request->picture.rotation))
     return failure("--rotate is %d: it must be 0, 90, 180 or 270", o->rotation);
-  RETURN_IF_ERROR(check_raw(*o, *request));
   request->picture.dither = o->dither;
   RETURN_IF_ERROR(read_crop(*o, request));
-  RETURN_IF_ERROR(check_resume(*o, *request));
+  RETURN_IF_ERROR(check_journal(*o, *request));
   RETURN_IF_ERROR(check_frame_rate(*o, *request));
-  RETURN_IF_ERROR(check_limit(Quantity::seconds, o->seconds, "--time"));
-  RETURN_IF_ERROR(check_shareable(*o, *request));
-  RETURN_IF_ERROR(check_budget_and_orbit(*o, request->aov));
-  return check_coherence(incoherent_because(*o, request->aov), &o->common);
+  if (!(std::fabs(o->orbit_degrees) <= 360)) return failure("--orbit must lie in -360 … 360");
+  return check_limit(Quantity::seconds, o->seconds, "--time");
 }
 
 void add_render_options(Command command, RenderOptions* o) {

@@ -164,13 +164,11 @@ Status view_scenes(ViewCommand* o, Viewer* viewer) {
 
 // Refuses contradictory options, and creates the folder for screenshots.
 Status check_options(const ViewCommand& o) {
-  RETURN_IF_ERROR(check_budget_options(o.budget));
-  if (!o.servers.addresses.empty()) {
-    if (const char* option = option_that_chooses(o.budget); chooses_settings(o.budget))
-      return failure("%s changes settings per frame and servers cannot: drop %s or --server", option, option);
-    if (!o.side_by_side.reference.empty())
-      return failure("--side-by-side works only without render servers: drop --side-by-side or --server");
-  }
+  Uses uses;
+  uses.add(Use::servers, !o.servers.addresses.empty());
+  add_budget_uses(o.budget, &uses);
+  uses.add(Use::side_by_side, !o.side_by_side.reference.empty());
+  RETURN_IF_ERROR(check_uses(uses));
   if (o.common.scene.empty() && o.view.backend == "null")
     return failure("nothing can be chosen on --screen null: name a SCENE");
   bool asked = o.view.screenshot_folder != ViewOptions().screenshot_folder;

@@ -81,46 +81,38 @@ Status load_front(const Renderer& renderer, const FrontSource& source, const Con
   return bound_error(source, &f->front);
 }
 
-constexpr IndirectChoice kInstantRadiosity = indirect_choice(Effect::instant_radiosity);
+bool is_planned(const Renderer& renderer, const Candidate& candidate) {
+  const Settings settings = with_candidate(renderer.settings, candidate);
+  const EffectMask mask = plan_effects(renderer.scene, settings).mask;
+  PlannedFor need;
+  return check_planned(renderer.scene, renderer.memory.plan.planned_for, settings, mask, &need).ok;
+}
 
-// Plans for virtual lights, gradients of stored light, undersampling and source selection if a candidate uses them, and
-// for the most points per area light that fit; drops candidates that need more.
+// Plans for the most memory that a candidate needs for each setting; drops candidates that do not fit.
 Status plan_front(Renderer* renderer, const SceneStorage& storage, const OutputNeed& output, const FrontSource& source,
                   const ContentHash* identity, OpenFront* f) {
   renderer->settings.points_per_area_light = 1;
   RETURN_IF_ERROR(plan_renderer(renderer, storage, output));
   RETURN_IF_ERROR(load_front(*renderer, source, identity, f));
-  const Front all = f->front;
-  CHECK_GT(all.count, 0u);
-  std::uint32_t left_out = 0;
-  while (true) {
-    std::uint32_t most = 0;
-    for (std::uint32_t i = 0; i < f->front.count; ++i) {
-      most = std::max(most, f->front.candidates[i].points_per_area_light);
-      if (f->front.candidates[i].indirect == kInstantRadiosity) renderer->settings.indirect = kInstantRadiosity;
-      if (renderer->settings.resolution == Resolution::full)
-        renderer->settings.resolution = f->front.candidates[i].resolution;
-      if (is_smooth_on_triangles(f->front.candidates[i].reconstruction))
-        renderer->settings.reconstruction = f->front.candidates[i].reconstruction;
-      if (f->front.candidates[i].environment_shadows > 0)
-        renderer->settings.environment_shadows = f->front.candidates[i].environment_shadows;
-      if (f->front.candidates[i].light_tolerance > 0)
-        renderer->settings.light_tolerance = f->front.candidates[i].light_tolerance;
-    }
-    renderer->settings.points_per_area_light = most;
-    Status status = plan_renderer(renderer, storage, output);
+  const Settings least = renderer->settings;
+  const std::uint32_t all = f->front.count;
+  CHECK_GT(all, 0u);
+  for (bool fits = false; !fits;) {
+    const Candidate* candidates = f->front.candidates;
+    const std::vector<Quality> wanted(candidates, candidates + f->front.count);
+    renderer->settings = widest_settings(renderer->scene, least, {wanted.data(), f->front.count});
+    const Status status = plan_renderer(renderer, storage, output);
+    const std::uint32_t most = renderer->settings.points_per_area_light;
+    fits = status.ok;
     Front rest;
-    for (std::uint32_t i = 0; i < f->front.count && !status.ok; ++i)
-      if (f->front.candidates[i].points_per_area_light < most) rest.candidates[rest.count++] = f->front.candidates[i];
-    if (status.ok || rest.count == 0) {
-      RETURN_IF_ERROR(status);
-      break;
-    }
-    left_out = all.count - rest.count;
+    for (std::uint32_t i = 0; i < f->front.count; ++i)
+      if (fits ? is_planned(*renderer, candidates[i]) : candidates[i].points_per_area_light < most)
+        rest.candidates[rest.count++] = candidates[i];
+    if (rest.count == 0) return status;
     f->front = rest;
   }
-  if (left_out > 0)
-    f->notes.push_back(std::to_string(left_out) + " of " + std::to_string(all.count) +
+  if (f->front.count < all)
+    f->notes.push_back(std::to_string(all - f->front.count) + " of " + std::to_string(all) +
                        " candidates of the front do not fit in memory: raise --memory to use them");
   return success();
 }
@@ -142,12 +134,6 @@ void format_bounds(const Budget& budget, const char* error_name, char (&text)[kB
 }
 
 }  // namespace
-
-Status check_budget_options(const BudgetOptions& options) {
-  if (!options.front.empty() && !chooses_settings(options))
-    return failure("--front is the file that --budget-ms and --flip-max choose from: add one of them, or drop it");
-  return success();
-}
 
 Status open_scene_with_front(const CommonOptions& common, const FrontSource& from,
                              const std::function<std::size_t(const Settings&)>& output_bytes, OpenScene* opened,
@@ -334,7 +320,7 @@ void print_budget(const Budget& budget, bool last_alone) {
   char bounds[kBoundsMax];
   format_bounds(budget, "ꟻLIP", bounds);
   std::printf("  %s: %s: expected ꟻLIP %s; traded away: %s\n", bounds, quality, error_text(chosen).c_str(), change);
-  Range range;
+  MeasuredRange range;
   if (!budget.frame_ms.empty()) {
     std::vector<double> sorted = budget.frame_ms;
     range = range_of(sorted.data(), static_cast<std::uint32_t>(sorted.size()));

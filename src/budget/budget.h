@@ -6,6 +6,7 @@
 
 #include "budget/front_file.h"
 #include "plan/governor.h"
+#include "plan/resolve.h"
 #include "present/hud_text.h"
 #include "session/open_scene.h"
 #include "session/report.h"
@@ -22,8 +23,10 @@ struct BudgetOptions {
 };
 // Returns whether a front provides the settings: the least error within the time, or the fastest within the error.
 inline bool chooses_settings(const BudgetOptions& options) { return options.ms > 0 || options.flip_max > 0; }
-Status check_budget_options(const BudgetOptions& options);
-inline const char* option_that_chooses(const BudgetOptions& o) { return o.ms > 0 ? "--budget-ms" : "--flip-max"; }
+inline void add_budget_uses(const BudgetOptions& o, Uses* uses) {
+  uses->add(Use::budget, chooses_settings(o), o.ms > 0 ? "--budget-ms" : "--flip-max");
+  uses->add(Use::front, !o.front.empty());
+}
 
 // The settings to choose from for an open scene.
 struct OpenFront {

@@ -76,6 +76,7 @@ struct SettingRow {
   SweepValues sweep;              // least accurate first
   double (*price)(double value);  // relative cost of a frame; null: hardly depends on the value
   const char* theory;             // expected slope of RMSE over time; empty: theory predicts none
+  bool may_be_absent = false;     // fronts omit the default: those written before the setting existed lack it
 };
 
 }  // namespace pocketray

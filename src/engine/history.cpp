@@ -7,6 +7,7 @@
 #include "engine/prepare.h"
 #include "engine/recolor.h"
 #include "plan/plan_memory.h"
+#include "plan/resolve.h"
 
 namespace pocketray {
 namespace {
@@ -37,8 +38,8 @@ bool begin_following(Renderer* renderer) {
   Coherence* c = &renderer->history.coherence;
   if (!state->planned) {
     state->whole_because = state->unplanned_because;
-  } else if (renderer->effects.mask & kNotFollowed & kEffectsBuilt) {
-    state->whole_because = "pixels depend on their neighbours";
+  } else if (const char* because = unfollowed_because(renderer->effects.mask)) {
+    state->whole_because = because;
   } else if (!fits(*c, renderer->frame)) {
     state->whole_because = "more samples, lights or effects than memory was planned for";
   } else if (renderer->settings.coherence == CoherenceMode::automatic && rests(&state->trial)) {

@@ -7,6 +7,7 @@
 #include "effect/setting_list.h"
 #include "indirect/ambient.h"
 #include "indirect/environment.h"
+#include "plan/resolve.h"
 #include "shade/camera.h"
 #include "shade/contact.h"
 #include "shade/even_points.h"
@@ -169,14 +170,6 @@ const char* mapped_light_unfit(const Renderer& renderer) {
   return nullptr;
 }
 
-const char* light_map_unfit(const Renderer& renderer) {
-  const EffectMask mask = renderer.effects.mask;
-  if (has(mask, Effect::undersampling) || has(mask, Effect::selective)) return "they need every pixel traced";
-  if (has(mask, Effect::instant_radiosity)) return "this device renders the light itself";
-  if (has(mask, Effect::occlusion)) return "an occlusion texture hides part of the device's own light";
-  return nullptr;
-}
-
 std::size_t first_hit_count(const Settings& settings) {
   return std::size_t(settings.width) * settings.height * settings.samples_per_pixel;
 }
@@ -202,7 +195,7 @@ void add_mapped_light(Renderer* renderer, const Hit* first_hits, const LightMap&
                       std::uint32_t row_end) {
   CHECK(row_begin <= row_end && row_end <= renderer->settings.height);
   CHECK(first_hits != nullptr);
-  CHECK(map.surface != nullptr && map.light != nullptr && light_map_unfit(*renderer) == nullptr);
+  CHECK(map.surface != nullptr && map.light != nullptr && unshared_because(renderer->effects.mask) == nullptr);
   RowsOfLight rows = {renderer, first_hits, map, same_camera(map.camera, renderer->frame.camera)};
   share_items(renderer->workers, row_begin, row_end, add_to_row, &rows);
 }

@@ -41,9 +41,6 @@ IndirectChoice own_indirect(const Scene& scene);
 
 // Returns why a map cannot hold the indirect light of a renderer's frames; null: it can.
 const char* mapped_light_unfit(const Renderer& renderer);
-// Returns why a renderer's frames, with their own indirect light, cannot use a map; null: they can. The text continues
-// "light maps: ".
-const char* light_map_unfit(const Renderer& renderer);
 
 // Number of first hits that the frame keeps for later steps: FrameTask::first_hits.
 std::size_t first_hit_count(const Settings& settings);

@@ -257,31 +257,13 @@ Status change_settings(Renderer* renderer, const Settings& settings) {
   RETURN_IF_ERROR(validate_settings(settings));
   const Scene scene = opened_scene(*renderer);
   EffectPlan effects = plan_effects(scene, settings);
-  std::uint32_t point_count;
-  RETURN_IF_ERROR(light_point_count(scene, settings, effects.mask, &point_count));
-  if (point_count > renderer->lights.point_count_max)
-    return failure("the lights need %u points, memory is planned for %u: plan for that many", point_count,
-                   renderer->lights.point_count_max);
-  // Room kept for more lights would hold the points, but not their groups.
-  if (has_point_groups(settings, effects.mask) && renderer->lights.point_groups.empty())
-    return failure("memory is planned for at most %u points per area light: plan for %u", kUndividedMax,
-                   settings.points_per_area_light);
-  if (has(effects.mask, Effect::instant_radiosity) && !virtual_lights_of(renderer->frame.indirect))
-    return failure("memory is planned without virtual lights: plan with --indirect instant-radiosity");
-  if (has(effects.mask, Effect::radiosity) && is_smooth_on_triangles(settings.reconstruction) &&
-      !has_gradients(renderer->scene, renderer->frame.indirect))
-    return failure("memory is planned without gradients of stored light: plan with --reconstruction cubic");
-  if (has(effects.mask, Effect::environment_shadow) && !renderer->lights.environment)
-    return failure("memory is planned without shadows from the environment: plan with --environment-shadows above 0");
-  if (has(effects.mask, Effect::source_selection) && renderer->scratch.light_entries.empty())
-    return failure("memory is planned for shadow rays to all lights: plan with a --light-tolerance above 0");
-  if (has(effects.mask, Effect::undersampling) && renderer->scratch.window_pixels.empty())
-    return failure("memory is planned for all pixels to be traced: plan with --resolution half");
+  PlannedFor need;
+  RETURN_IF_ERROR(check_planned(scene, renderer->memory.plan.planned_for, settings, effects.mask, &need));
   std::size_t memory_bytes = now.memory_bytes;
   renderer->settings = settings;
   renderer->settings.memory_bytes = memory_bytes;
   renderer->effects = effects;
-  renderer->lights.points.count = point_count;
+  renderer->lights.points.count = need.light_points;
   return success();
 }
 
@@ -320,7 +302,7 @@ bool probe_exposure(Renderer* renderer, ExposureProbe* p, std::uint32_t pixel_co
                 begin = p->next;
   FrameData frame = renderer->frame;
   frame.first_hits = nullptr;
-  if (frame.mask & (bit(Effect::selective) | bit(Effect::undersampling))) frame.trace_strip = nullptr;
+  if (frame.mask & kInterpolatingEffects) frame.trace_strip = nullptr;
   Tracer tracer = make_tracer(frame);
   tracer.light_entries = renderer->tracers[0].light_entries;
   for (; p->next < count && p->next - begin < pixel_count_max; ++p->next) {

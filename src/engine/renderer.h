@@ -119,9 +119,8 @@ Status build_renderer(Renderer* renderer);
 // alone and renders nothing. The caller sets camera, exposure, effects and whatever else it uses of the scene.
 Status plan_without_scene(Renderer* renderer, const OutputNeed& output);
 
-// Changes the settings that trade accuracy for time for the next frames, within the planned memory: samples, depth,
-// points per area light, cut-off, texture filter and normals may differ. Fails and changes nothing if one is out of
-// range or the lights would need more points than planned.
+// Changes the settings that trade accuracy for time for the next frames. Fails and changes nothing if one is out of
+// range or needs more memory than planned.
 Status change_settings(Renderer* renderer, const Settings& settings);
 
 // Sets the camera for the next frames.

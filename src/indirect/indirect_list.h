@@ -51,14 +51,6 @@ inline IndirectData prepare_indirect(const Scene& scene, const Quality& how, Eff
   return data;
 }
 
-// Returns whether a plan has the data for quadratic and cubic reconstruction; linear light on triangles needs none.
-inline bool has_gradients(const Scene& scene, const IndirectData& data) {
-  if (scene.radiosity_values.empty()) return true;
-  for (int i = 0; i < IndirectList::kCount; ++i)
-    if (IndirectList::kInfos[i].effects == RadiosityIndirect::kEffects) return data.prepared[i] != nullptr;
-  return false;
-}
-
 // Lights of InstantRadiosity, placed anew for each frame; null if it is not prepared.
 inline VirtualLights* virtual_lights_of(const IndirectData& data) {
   for (int i = 0; i < IndirectList::kCount; ++i)

@@ -16,11 +16,6 @@ constexpr char kFirstWord[] = "pocketray-front";
 // Settings come first, in list order.
 enum Key : int { flip = kSettingCount, ns, kKeyCount };
 static_assert(kKeyCount <= 32, "one bit per key");
-// Settings that only whole frames have, and the newest one, are omitted at their defaults, so that older fronts can be
-// read, and older programs can read new ones.
-bool may_be_absent(const SettingRow& row) {
-  return row.wire_bytes == 0 || row.field.get == get_member<&Quality::compensation>;
-}
 const char* key_name(int key) { return key == flip ? "flip" : key == ns ? "ns" : kSettingList[key].name; }
 
 struct Text {
@@ -115,7 +110,7 @@ Status read_candidate(Text line, unsigned line_number, Candidate* c) {
     seen |= 1u << key;
   }
   for (int key = 0; key < kSettingCount; ++key)
-    if (!(seen >> key & 1u) && may_be_absent(kSettingList[key]))
+    if (!(seen >> key & 1u) && kSettingList[key].may_be_absent)
       settings[key] = kSettingList[key].field.get(Quality()), seen |= 1u << key;
   for (int key = 0; key < kKeyCount; ++key)
     if (key != flip && !(seen >> key & 1u)) return failure("line %u: %s= is missing", line_number, key_name(key));
@@ -179,7 +174,7 @@ void append_quality(const Quality& quality, char* text, std::size_t size, std::s
   CHECK(text != nullptr);
   constexpr int kDigits = 9;  // as many as a float needs
   for (const SettingRow& row : kSettingList) {
-    if (may_be_absent(row) && row.field.get(quality) == row.field.get(Quality())) continue;
+    if (row.may_be_absent && row.field.get(quality) == row.field.get(Quality())) continue;
     append(text, size, length, "%s%s=%s", *length && text[*length - 1] != '\n' ? " " : "", row.name,
            Value(row, quality, kDigits).text);
   }

@@ -8,6 +8,7 @@
 #include "effect/effect_list.h"
 #include "effect/setting_list.h"
 #include "plan/effects/rule.h"
+#include "plan/resolve.h"
 
 namespace pocketray {
 namespace {
@@ -38,6 +39,7 @@ EffectPlan plan_effects(const Scene& scene, const Settings& settings) {
   EffectPlan plan;
   const EffectCall call = {scene, settings, census, choose_indirect(scene, settings), plan};
   each_rule([&](const EffectRule& rule) { plan.decisions[static_cast<int>(rule.effect)] = rule.decide(call); });
+  let_effects_yield(settings.forced_off, &plan);
   each_rule([&](const EffectRule& rule) {
     EffectDecision& decision = plan.decisions[static_cast<int>(rule.effect)];
     apply_force(rule, call, &decision);

@@ -2,17 +2,15 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <cstring>
 #include <utility>
 
 #include "base/check.h"
 #include "base/span.h"
+#include "indirect/indirect_list.h"
 #include "plan/place_light_polygons.h"
+#include "plan/resolve.h"
 #include "scene/animate.h"
-#include "shade/interleaved.h"
-#include "shade/lattice.h"
-#include "shade/point_groups.h"
-#include "shade/selective.h"
-#include "shade/source_selection.h"
 
 namespace pocketray {
 namespace {
@@ -20,8 +18,14 @@ namespace {
 void add_part(MemoryPlan* plan, const char* name, ArenaKind arena, std::size_t bytes) {
   CHECK(name != nullptr);
   if (bytes == 0) return;  // an absent effect takes no memory
-  CHECK_LT(plan->part_count, kMemoryPartMax);
-  plan->parts[plan->part_count++] = {name, arena, bytes};
+  MemoryPart* part = std::find_if(plan->parts, plan->parts + plan->part_count, [&](const MemoryPart& other) {
+    return std::strcmp(other.name, name) == 0 && other.arena == arena;
+  });
+  if (part == plan->parts + plan->part_count) {
+    CHECK_LT(plan->part_count, kMemoryPartMax);
+    plan->parts[plan->part_count++] = {name, arena, 0};
+  }
+  part->bytes = size_sum(part->bytes, bytes);
   std::size_t* arena_bytes = &plan->arena_bytes[static_cast<int>(arena)];
   *arena_bytes = size_sum(*arena_bytes, bytes);
   plan->total_bytes = size_sum(plan->total_bytes, bytes);
@@ -80,36 +84,22 @@ Status plan_memory_with(const Scene& scene, const Settings& settings, const Effe
   }
   add_part(plan, "accelerator", ArenaKind::persistent, keep);
   add_part(plan, "pose", ArenaKind::persistent, moves ? pose_need(scene) : 0);
-  const IndirectNeed indirect = indirect_need(scene, settings, prepared_methods(scene, settings, effects.mask));
-  add_part(plan, "indirect light", ArenaKind::persistent, indirect.keep);
-  scratch = std::max(scratch, indirect.scratch);
-  add_part(plan, "environment shadows", ArenaKind::persistent,
-           plans_environment_lights(scene, settings) ? arena_need<EnvironmentLights>(1) : 0);
+  scratch = std::max(scratch, indirect_need(scene, settings, prepared_methods(scene, settings, effects.mask)).scratch);
+  plan->planned_for = {settings, effects.mask, lights.points, lights.selected};
+  for (const MemoryRow& row : memory_rows())
+    add_part(plan, row.part, ArenaKind::persistent, row.need(scene, plan->planned_for));
   add_part(plan, "materials", ArenaKind::persistent,
            storage.recolorable ? arena_need<Material>(storage.recolorable) : 0);
-  const bool has_groups = has_point_groups(settings, effects.mask);
-  const std::size_t groups = has_groups && lights.points ? point_groups_need(lights.points) : 0;
-  add_part(plan, "lights", ArenaKind::persistent, (lights.points ? arena_need<LightPoint>(lights.points) : 0) + groups);
-  const std::uint32_t polygons = light_polygon_count(scene, effects.mask);
-  add_part(plan, "flat lamps", ArenaKind::persistent, polygons ? arena_need<LightPolygon>(polygons) : 0);
-  add_part(plan, "source selection", ArenaKind::persistent, selection_need(settings, lights.selected));
   add_part(plan, "threads", ArenaKind::persistent, arena_need<Tracer>(settings.threads));
-  add_part(plan, "selective", ArenaKind::persistent,
-           has(effects.mask, Effect::selective) ? selective_need(settings) : 0);
-  add_part(plan, "interleaving", ArenaKind::persistent,
-           is_interleaved(effects.mask)
-               ? arena_need<InterleavedPixel>(std::size_t(settings.threads) * kept_pixel_count(settings))
-               : 0);
-  add_part(plan, "undersampling", ArenaKind::persistent,
-           lattice_need(settings));
   add_part(plan, "spans", ArenaKind::persistent,
            arena_need<Span>(settings.height) + arena_need<std::uint64_t>(settings.height));
   std::size_t pixel_count = static_cast<std::size_t>(settings.width) * settings.height;
   add_part(plan, "radiance", ArenaKind::persistent, arena_need<Vec3>(pixel_count));
   if (with_coherence) {
-    add_part(
-        plan, "coherence", ArenaKind::persistent,
-        coherence_need(scene, effects.mask, coherence_plan(settings, lights.points, polygons, storage.recolorable)));
+    add_part(plan, "coherence", ArenaKind::persistent,
+             coherence_need(scene, effects.mask,
+                            coherence_plan(settings, lights.points, light_polygon_count(scene, effects.mask),
+                                           storage.recolorable)));
     scratch = std::max(scratch, coherence_scratch_need(scene, effects.mask));
   }
   // A single build's scratch is free again before the first frame is shown, so output shares its part of the frame
@@ -139,11 +129,7 @@ Status plan_memory(const Scene& scene, const Settings& settings, const EffectPla
                    const char** without_coherence) {
   const bool changes = (has(effects.mask, Effect::animation) && is_animated(scene)) || storage.recolorable > 0;
   bool wanted = settings.coherence == CoherenceMode::on || (settings.coherence == CoherenceMode::automatic && changes);
-  const char* mixes = is_interleaved(effects.mask) && settings.coherence_by_tables
-                          ? "the tables do not track which pixels share light"
-                      : has(effects.mask, Effect::selective)     ? "selective rendering interpolates pixels"
-                      : has(effects.mask, Effect::undersampling) ? "undersampling reconstructs pixels"
-                                                                 : nullptr;
+  const char* mixes = unfollowed_because(effects.mask, settings.coherence_by_tables);
   wanted = wanted && !mixes;
   const char* why = mixes                                      ? mixes
                     : settings.coherence == CoherenceMode::off ? "coherence is off"

@@ -5,7 +5,7 @@
 #include "accel/accel.h"
 #include "base/status.h"
 #include "effect/effect_plan.h"
-#include "effect/settings.h"
+#include "plan/memory_list.h"
 #include "scene/scene.h"
 #include "temporal/coherence.h"
 
@@ -20,13 +20,14 @@ struct MemoryPart {
   std::size_t bytes;
 };
 
-constexpr int kMemoryPartMax = 16;
+constexpr int kMemoryPartMax = 16;  // one for each name: tests/plan/plan_memory_test.cpp
 
 struct MemoryPlan {
   MemoryPart parts[kMemoryPartMax];
   int part_count = 0;
   std::size_t arena_bytes[3] = {0, 0, 0};
   std::size_t total_bytes = 0, limit_bytes = 0;
+  PlannedFor planned_for;
 };
 
 // Memory that the scene uses before planning.

@@ -5,7 +5,7 @@
 #include "base/check.h"
 #include "base/limit_list.h"
 #include "plan/plan_scene.h"
-#include "plan/unused_settings.h"
+#include "plan/resolve.h"
 #include "platform/memory.h"
 #include "session/animation_choice.h"
 #include "session/environment.h"
@@ -132,7 +132,7 @@ Status start_scene(OpenScene* opened, const CommonOptions& o) {
   return change_exposure(factor, &renderer->view.exposure);
 }
 
-void print_notes(const OpenScene& opened) {
+void print_notes(const OpenScene& opened, const char* aov) {
   if (!opened.source.warning.empty()) print_note(opened.source.warning);
   std::uint32_t threads = worker_thread_count(opened.renderer.workers), asked = opened.renderer.settings.threads;
   if (!opened.renderer.image.empty() && threads < asked)
@@ -154,11 +154,10 @@ void print_notes(const OpenScene& opened) {
   if (info.default_lights == 0 && light != LightChoice::key)
     std::fprintf(stderr, "pocketray: --light changes nothing: the scene or its environment has light\n");
   const Renderer& renderer = opened.renderer;
-  if (renderer.settings.coherence == CoherenceMode::on && !renderer.history.state.planned)
-    std::fprintf(stderr, "pocketray: --coherence on has no effect: %s\n", renderer.history.state.unplanned_because);
   if (renderer.scene.triangles.empty()) return;  // a server has the scene
-  const UnusedSettings unused = find_unused_settings(renderer.scene, opened.asked);
-  for (int i = 0; i < unused.count; ++i) print_note(unused.notes[i]);
+  const Notes notes =
+      find_requests_without_effect(renderer.scene, {opened.asked, renderer.history.state.unplanned_because, aov});
+  for (int i = 0; i < notes.count; ++i) print_note(notes.text[i]);
 }
 
 }  // namespace pocketray

@@ -45,6 +45,6 @@ inline const Box& subject_of(const OpenScene& opened) {
 Status change_exposure(float factor, float* exposure);
 
 // Prints the scene's warning and the defaults that were added, one line each, on stderr.
-void print_notes(const OpenScene& opened);
+void print_notes(const OpenScene& opened, const char* aov = nullptr);
 
 }  // namespace pocketray

@@ -7,12 +7,13 @@
 #pragma once
 #include <algorithm>
 
+#include "effect/effect_list.h"
 #include "shade/strip.h"
 #include "shade/surface.h"
 
 namespace pocketray {
 
-constexpr EffectMask kInterleavedEffects = bit(Effect::instant_radiosity) | bit(Effect::environment_shadow);
+constexpr EffectMask kInterleavedEffects = effects_with(&EffectRow::reads, Reads::neighbours);
 constexpr bool is_interleaved(EffectMask mask) { return (mask & kEffectsBuilt & kInterleavedEffects) != 0; }
 
 constexpr std::uint32_t kPatternSide = 4, kPatternPixels = kPatternSide * kPatternSide;

@@ -132,7 +132,7 @@ bool follow_frame(Coherence* c, const FrameData& frame, const char** why) {
   std::fill(c->row_traced.begin(), c->row_traced.end(), std::uint8_t(0));
   bool lights_changed =
       !*why && (differ(c->lights.data, frame.lights) || differ(c->light_polygons.data, frame.light_polygons));
-  if (lights_changed && has(frame.mask, Effect::source_selection)) {
+  if (lights_changed && (frame.mask & kEffectsBuilt & effects_with(&EffectRow::followed, Followed::as_lights_stand))) {
     *why = "a light changed; light selection is recomputed";
     lights_changed = false;
   }

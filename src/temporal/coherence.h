@@ -17,10 +17,6 @@ namespace pocketray {
 constexpr bool is_compensated(const Quality& quality, EffectMask mask) {
   return has(mask, Effect::instant_radiosity) && quality.compensation == Compensation::rays;
 }
-// Effects by which pixels depend on each other in ways that are not followed.
-constexpr EffectMask kNotFollowed = bit(Effect::selective) | bit(Effect::undersampling);
-// Effects not followed by the paper's method, whose tables do not tell which pixels receive a ray's light.
-constexpr EffectMask kNotInTables = kNotFollowed | kInterleavedEffects;
 
 // Capacities and modes.
 struct CoherencePlan {

@@ -6,6 +6,7 @@
 #include "base/check.h"
 #include "base/seal.h"
 #include "engine/frame.h"
+#include "plan/resolve.h"
 #include "present/repack.h"
 #include "session/interrupt.h"
 #include "viewer/follow.h"
@@ -126,11 +127,9 @@ Status set_quality(Renderer* renderer, const Quality& quality) {
   return change_settings(renderer, settings);
 }
 
-constexpr EffectMask kInterpolating = bit(Effect::selective) | bit(Effect::undersampling);
-
 bool can_refine(const Viewer& viewer, const Renderer& renderer, const ViewerLoop& loop) {
   if (loop.exact || viewer.picture_merged || viewer.options.frame_count > 0) return false;
-  return loop.refines || (renderer.effects.mask & kInterpolating) != 0;
+  return loop.refines || (renderer.effects.mask & kInterpolatingEffects) != 0;
 }
 
 // Traces a slice of the exact picture, over one with interpolated pixels.
@@ -139,7 +138,7 @@ Status refine(Viewer* viewer, Renderer* renderer, ViewerLoop* loop) {
     loop->quality = renderer->settings;
     loop->refines = true;
     Quality exact = renderer->settings;
-    exact.selective_contrast = 0, exact.resolution = Resolution::full;
+    trace_all_pixels(&exact);
     RETURN_IF_ERROR(set_quality(renderer, exact));
     RETURN_IF_ERROR(begin_frame(renderer, {loop->seconds}));
     loop->progressive = afresh();

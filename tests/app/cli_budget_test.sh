@@ -51,7 +51,7 @@ expect budget_excludes_what_it_chooses 2 'excludes' render cube "${small[@]}" --
 for ms in 0 -1 nan inf 1e305 0.0001 soon; do
   expect "budget_no_time_$ms" 1 'budget-ms' render cube "${small[@]}" --budget-ms "$ms"
 done
-expect front_without_budget 1 'choose from: add one of them' render cube "${small[@]}" --front one.front -o refused.ppm
+expect front_without_budget 1 'choose from: add --budget-ms' render cube "${small[@]}" --front one.front -o refused.ppm
 # Goal: --flip-max takes the fastest settings whose error was measured to be small enough, whatever they take, and with a
 # time the best of these. Method: three candidates whose pictures differ; the picture of each by name.
 rest="depth=1 area-lights=1 cut-off=0 texture-filter=nearest normals=flat indirect=auto reconstruction=bicubic virtual-lights=64 light-tolerance=0.0625 environment-shadows=32"

@@ -21,7 +21,7 @@ check no_part_file_is_left test -z "$(ls ./*.part 2>/dev/null)"
 expect still_sequence 0 'all frames are equal: the scene does not move' render cube "${small[@]}" --frames 0:1 -o s.ppm
 expect still_time 0 'time has no effect: the scene does not move' render cube "${small[@]}" --time 2 -o s.ppm
 expect time_beyond_the_animation 0 'the animation loops after [0-9.]+ s: --time 12 s shows' render seesaw "${small[@]}" --time 12 -o s.ppm
-expect samples_of_aov 0 'aov depth samples pixel centres; --samples is ignored' render cube "${small[@]}" --samples 4 --aov depth -o s.ppm
+expect samples_of_aov 0 'samples has no effect on --aov depth' render cube "${small[@]}" --samples 4 --aov depth -o s.ppm
 expect interleaved_is_no_resolution 1 'full, checkerboard or half' render cube "${small[@]}" --resolution interleaved -o s.ppm
 expect compensation_of_nothing 0 'compensation has no effect: instant-radiosity is off .ambient instead.; --indirect instant-radiosity' \
   render cornell "${small[@]}" --compensation rays -o s.ppm

@@ -125,7 +125,7 @@ done
 check diary_is_kept test "$(cat diary diary_as_list.ppm.resume)" = "$(printf 'precious\nprecious')" -a ! -e absent
 expect resume_a_still 1 'for sequences of numbered pictures' render cube "${small[@]}" --resume -o refused.ppm
 expect resume_a_gif 1 'for sequences of numbered pictures' render cube "${small[@]}" --turntable 3 --resume -o refused.gif
-expect resume_a_budget 1 'drop it' render seesaw "${small[@]}" --frames 0:3 --budget-ms 100 --resume -o refused.ppm
+expect resume_a_budget 1 'drop --resume or --budget-ms' render seesaw "${small[@]}" --frames 0:3 --budget-ms 100 --resume -o refused.ppm
 
 # Goal: combinations that make no sense are refused in one line.
 expect turntable_and_frames 2 'excludes' render cube "${small[@]}" --turntable 4 --frames 0:3 -o refused.ppm

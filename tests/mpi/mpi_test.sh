@@ -179,9 +179,9 @@ check nothing_baked test ! -e cube.pray
 expect no_scene 1 'nowhere.glb' reference nowhere.glb -o nowhere.pfm
 expect no_folder 1 'nofolder' "${reference[@]}" -o nofolder/r.pfm
 expect other_size 1 'size "16x12"' reference cube --size 16x16 -o alone.pfm
-expect one_file 1 'one file, written by one program' render seesaw "${tiny[@]}" --frames 0:9 -o o.gif
+expect one_file 1 'an animation is one file' render seesaw "${tiny[@]}" --frames 0:9 -o o.gif
 expect one_picture 1 'one picture' render cube -o o.png
-expect with_a_budget 1 'drop --server and --budget-ms' render seesaw "${tiny[@]}" --frames 0:9 --budget-ms 9 -o o.png
+expect with_a_budget 1 'start without mpirun or drop --budget-ms' render seesaw "${tiny[@]}" --frames 0:9 --budget-ms 9 -o o.png
 expect usage 2 'bogus' render seesaw --bogus
 check accuracy_folder test ! -e nofolder
 expect accuracy_no_scene 1 'nowhere.glb' accuracy nowhere.glb -o sweep_none

@@ -93,14 +93,13 @@ TEST_CASE("change_settings_refuses_what_was_not_planned") {
   more.points_per_area_light = 5;
   Status refused = change_settings(&test->renderer, more);
   CHECK_FALSE(refused.ok);
-  CHECK(std::strstr(refused.message, "plan for that many") != nullptr);
-  const std::uint32_t planned = test->renderer.lights.point_count_max;
-  test->renderer.lights.point_count_max += 60;  // as with room for more lights
+  CHECK(std::strstr(refused.message, "planned for --area-lights 4: plan with --area-lights 5") != nullptr);
+  test->renderer.memory.plan.planned_for.light_points += 60;  // as with room for more lights
   more.points_per_area_light = 9;
   refused = change_settings(&test->renderer, more);
   CHECK_FALSE(refused.ok);
-  CHECK(std::strstr(refused.message, "at most 5 points per area light: plan for 9") != nullptr);
-  test->renderer.lights.point_count_max = planned;
+  CHECK(std::strstr(refused.message, "plan with --area-lights 9") != nullptr);
+  test->renderer.memory.plan.planned_for.light_points -= 60;
   Settings wrong = settings;
   wrong.ray_depth = kRayDepthMax + 1;
   CHECK_FALSE(change_settings(&test->renderer, wrong).ok);
@@ -111,7 +110,7 @@ TEST_CASE("change_settings_refuses_what_was_not_planned") {
   wrong.resolution = Resolution::checkerboard;
   refused = change_settings(&test->renderer, wrong);
   CHECK_FALSE(refused.ok);
-  CHECK(std::strstr(refused.message, "plan with --resolution half") != nullptr);
+  CHECK(std::strstr(refused.message, "plan with --resolution checkerboard") != nullptr);
   CHECK(test->renderer.settings.points_per_area_light == 4);
   CHECK(same_bits(picture_of(&test->renderer), before));
   generated->lights.assign(30, Light());
@@ -121,5 +120,5 @@ TEST_CASE("change_settings_refuses_what_was_not_planned") {
   settings.light_tolerance = 0.1f;
   refused = change_settings(&test->renderer, settings);
   CHECK_FALSE(refused.ok);
-  CHECK(std::strstr(refused.message, "--light-tolerance above 0") != nullptr);
+  CHECK(std::strstr(refused.message, "plan with --light-tolerance 0.1") != nullptr);
 }

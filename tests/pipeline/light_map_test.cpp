@@ -10,6 +10,7 @@
 
 #include "effect/setting_list.h"
 #include "engine/frame.h"
+#include "plan/resolve.h"
 #include "scene/builtin_helpers.h"
 #include "support/effort.h"
 #include "support/generated_scene.h"
@@ -251,11 +252,14 @@ TEST_CASE("light_map_of_any_light_leaves_numbers") {
 // Goal: renderers whose frames cannot take light from a map say why.
 TEST_CASE("light_map_fits_only_frames_of_whole_pixels") {
   const std::unique_ptr<BuiltScene> built = build_builtin("cornell");
+  auto because = [&](const Settings& with) {
+    return unshared_because(make_renderer(built->scene, with)->renderer.effects.mask);
+  };
   Settings settings = settings_of(Effect::ambient);
-  CHECK(light_map_unfit(make_renderer(built->scene, settings)->renderer) == nullptr);
+  CHECK(because(settings) == nullptr);
   settings.resolution = Resolution::half;
-  CHECK(light_map_unfit(make_renderer(built->scene, settings)->renderer) != nullptr);
+  CHECK(because(settings) != nullptr);
   settings.resolution = Resolution::full, settings.selective_contrast = 0.1f;
-  CHECK(light_map_unfit(make_renderer(built->scene, settings)->renderer) != nullptr);
-  CHECK(light_map_unfit(make_renderer(built->scene, settings_of(Effect::instant_radiosity))->renderer) != nullptr);
+  CHECK(because(settings) != nullptr);
+  CHECK(because(settings_of(Effect::instant_radiosity)) != nullptr);
 }

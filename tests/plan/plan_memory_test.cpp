@@ -5,9 +5,11 @@
 #include <string>
 
 #include "engine/progressive.h"
+#include "plan/plan_effects.h"
 #include "plan/plan_memory.h"
 #include "support/feature_sets.h"
 #include "support/generated_scene.h"
+#include "support/test_environment.h"
 
 using namespace pocketray;
 
@@ -58,7 +60,7 @@ TEST_CASE("plan_memory_has_no_part_for_an_absent_effect") {
   CHECK(part_bytes(plan_for(bit(Feature::animation) | bit(Feature::ambient), bit(Effect::animation)), "pose") == 0);
   CHECK(part_bytes(plan_for(bit(Feature::point_light), 0), "lights") == arena_need<LightPoint>(1));
   CHECK(part_bytes(plan_for(bit(Feature::emission), 0), "lights") ==
-        arena_need<LightPoint>(2));  // 2 points per area light
+        arena_need<LightPoint>(2) + arena_need<LightPolygon>(1));  // 2 points per area light
   CHECK(part_bytes(plan_for(bit(Feature::emission) | bit(Feature::specular), 0), "lights") >
         arena_need<LightPoint>(9));  // 9 points, in groups
   CHECK(part_bytes(plan_for(bit(Feature::emission), bit(Effect::area_light)), "lights") == 0);
@@ -202,5 +204,83 @@ TEST_CASE("plan_memory_draws_within_its_buffer") {
     REQUIRE(std::memcmp(buffer.data(), whole, drawn) == 0);
     REQUIRE(buffer[size - 1] == 0);
     REQUIRE(buffer[size] == '#');
+  }
+}
+
+// Goal: the map has room for every part at once. Method: a scene with every feature, many lights and an environment,
+// all effects forced on, an accelerator built anew for every frame, changing materials and encrypted links.
+TEST_CASE("plan_memory_has_room_for_all_parts_at_once") {
+  auto generated = generate_scene(kAllFeatures, 2);
+  const TestEnvironment even = even_environment({1, 1, 1});
+  even.give(&generated->scene);
+  Settings settings = settings_of(kAllFeatures);
+  settings.forced_on = kAllEffects, settings.forced_off = bit(Effect::selective) | bit(Effect::undersampling);
+  settings.coherence = CoherenceMode::on;
+  settings.indirect = indirect_choice(Effect::instant_radiosity);
+  settings.memory_bytes = 64u << 20;
+  const EffectPlan effects = plan_effects(generated->scene, settings);
+  OutputNeed need(1000);
+  need.tls_bytes = 1000;
+  for (const AccelInfo* accel : kAccelList) {
+    MemoryPlan plan;
+    CHECK(plan_memory(generated->scene, settings, effects, *accel, {1 << 20, 8}, {100, 100}, need, &plan).ok);
+    CHECK(plan.part_count <= kMemoryPartMax);
+    CHECK(part_bytes(plan, "coherence") > 0);
+    CHECK(part_bytes(plan, "neighbouring pixels") > 0);
+    CHECK(part_bytes(plan, "environment shadows") > 0);
+  }
+}
+
+// Goal: settings that need more than planned are refused by the name of the setting, and others are not. Method: each
+// setting at each value of its sweep, planned with the defaults and with the widest of all; one light point more than
+// planned, which arenas round to as many bytes.
+TEST_CASE("planned_memory_holds_the_widest_settings") {
+  auto generated = generate_scene(kAllFeatures, 2);
+  generated->lights.resize(20);
+  generated->bind();
+  const Scene& scene = generated->scene;
+  std::vector<Quality> all;
+  for (const SettingRow& row : kSettingList)
+    for (int i = 0; i < row.sweep.count; ++i) {
+      all.push_back(Quality());
+      row.field.set(&all.back(), row.sweep.values[i]);
+    }
+  auto plan_for = [&](const Settings& settings) {
+    PlannedFor planned;
+    const EffectMask mask = plan_effects(scene, settings).mask;
+    REQUIRE(check_planned(scene, {settings, mask, 1u << 20, 1u << 20}, settings, mask, &planned).ok);
+    return planned;
+  };
+  auto refusal = [&](const PlannedFor& planned, const Settings& settings) {
+    PlannedFor in;
+    const Status status = check_planned(scene, planned, settings, plan_effects(scene, settings).mask, &in);
+    return status.ok ? std::string() : std::string(status.message);
+  };
+  Settings narrow;
+  narrow.light_tolerance = 0;
+  const Settings wide = widest_settings(scene, narrow, {all.data(), static_cast<std::uint32_t>(all.size())});
+  CHECK(wide.indirect == indirect_choice(Effect::instant_radiosity));
+  CHECK(wide.resolution != Resolution::full);
+  CHECK(wide.points_per_area_light == 256);
+  CHECK(wide.light_tolerance > 0);
+  const PlannedFor planned = plan_for(wide), planned_narrow = plan_for(narrow);
+  for (const Quality& quality : all) {
+    Settings settings;
+    static_cast<Quality&>(settings) = quality;
+    CHECK(refusal(planned, settings).empty());
+  }
+  Settings more = narrow;
+  more.indirect = indirect_choice(Effect::instant_radiosity);
+  CHECK(refusal(planned_narrow, more) ==
+        "memory is planned for --indirect auto: plan with --indirect instant-radiosity");
+  more = narrow, more.light_tolerance = 0.125f;
+  CHECK(refusal(planned_narrow, more) ==
+        "memory is planned for --light-tolerance 0: plan with --light-tolerance 0.125");
+  for (std::size_t lights = 1; lights < 20; ++lights) {
+    generated->lights.resize(lights);
+    generated->bind();
+    PlannedFor one_less = plan_for(narrow);
+    --one_less.light_points;
+    CHECK_FALSE(refusal(one_less, narrow).empty());
   }
 }

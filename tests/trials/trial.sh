@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # trial.sh [KIND...]: adds an entry of each kind to a copy of the sources, by one file and its entry in one list, and runs
-# the suites that loop over that list. KIND is setting, lobe, accelerator, indirect or device; all of them by default.
+# the suites that loop over that list. KIND is setting, effect, lobe, accelerator, indirect or device; all of them by default.
 # Takes minutes: `make trials`.
 set -eu
 root=$(cd "$(dirname "$0")/../.." && pwd)
@@ -28,7 +28,7 @@ try() {  # KIND SUITE[:CASES]...
   done
 }
 
-for kind in ${@:-setting lobe accelerator indirect device}; do
+for kind in ${@:-setting effect lobe accelerator indirect device}; do
   rm -rf "$copy/tree"
   mkdir "$copy/tree"
   git -C "$root" ls-files -z --deduplicate | (cd "$root" && xargs -0 cp --parents -t "$copy/tree")
@@ -43,6 +43,15 @@ for kind in ${@:-setting lobe accelerator indirect device}; do
       sed -i 's/^| effects on, effects off |/| sparkle | 4, real | how much it sparkles, 0–64 |\n&/' src/wire/PROTOCOL.md
       for file in src/effect/settings.h src/effect/setting_list.h src/wire/PROTOCOL.md; do edited $file; done
       try setting effect
+      ;;
+    effect)  # its bit, its row and its rule; the suite writes the table of pairs anew
+      count=$(sed -n 's|^constexpr int kEffectCount = \([0-9]*\);|\1|p' src/effect/effect.h)
+      sed -i "s|^  clear_coat,|&\n  glint,|; s|kEffectCount = $count|kEffectCount = $((count + 1))|" src/effect/effect.h
+      sed -i 's|^    {Effect::clear_coat, .*|&\n    {Effect::glint, "glint", "many samples"},|' src/effect/effect_list.h
+      rule='{Effect::glint, [](const EffectCall\& c) { return decided(c.settings.samples_per_pixel > 8, "glints"); }},'
+      sed -i "s|^    {Effect::animation, .*|&\n    $rule|" src/plan/effects/picture.cpp
+      for file in src/effect/effect.h src/effect/effect_list.h src/plan/effects/picture.cpp; do edited $file; done
+      POCKETRAY_WRITE=1 try effect plan effect
       ;;
     lobe)
       cp tests/trials/retro.cpp src/brdf/
@@ -68,6 +77,6 @@ for kind in ${@:-setting lobe accelerator indirect device}; do
       edited platform/devices/device_list.h
       try device platform:-tc=device*
       ;;
-    *) echo "trial.sh: no kind '$kind': setting, lobe, accelerator, indirect or device" >&2; exit 2 ;;
+    *) echo "trial.sh: no kind '$kind': setting, effect, lobe, accelerator, indirect or device" >&2; exit 2 ;;
   esac
 done

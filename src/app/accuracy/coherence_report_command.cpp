@@ -7,6 +7,7 @@
 #include "base/limits.h"
 #include "desktop/accuracy/gnuplot.h"
 #include "desktop/coherence_report/page.h"
+#include "plan/resolve.h"
 #include "session/interrupt.h"
 #include "session/note.h"
 #include "session/output.h"
@@ -35,7 +36,7 @@ Status plan_way(Way way, const ReportOptions& o, std::uint32_t table, Renderer* 
   if (!has(renderer->effects.mask, Effect::animation) || !is_animated(renderer->scene))
     return failure("%s does not move, so all its frames are equal: choose a scene with an animation, such as %s",
                    o.common.scene.c_str(), kPapersScene);
-  if (o.compare && (renderer->effects.mask & (bit(Effect::selective) | bit(Effect::undersampling))) != 0)
+  if (o.compare && (renderer->effects.mask & kInterpolatingEffects) != 0)
     return failure(
         "--compare traces single pixels, but with --selective or --resolution they depend on others: leave these out");
   if (o.compare && (renderer->effects.mask & kInterleavedEffects) != 0)
@@ -43,8 +44,8 @@ Status plan_way(Way way, const ReportOptions& o, std::uint32_t table, Renderer* 
         "--compare traces single pixels, but with virtual lights or shadows from the environment they depend on "
         "others: add --indirect none, or --environment-shadows 0");
   if (way == Way::frame_by_frame || renderer->history.state.planned) return success();
-  if ((renderer->effects.mask & (way == Way::by_tables ? kNotInTables : kNotFollowed)) != 0)
-    return failure("coherence does not follow these frames: %s", renderer->history.state.unplanned_because);
+  if (const char* because = unfollowed_because(renderer->effects.mask, way == Way::by_tables))
+    return failure("coherence does not follow these frames: %s", because);
   const CoherencePlan plan =
       coherence_plan(*settings, renderer->lights.point_count_max, renderer->lights.polygons.count);
   std::size_t bytes = renderer->memory.plan.total_bytes +
@@ -92,7 +93,7 @@ Status measure(const ReportOptions& o, CoherenceReport* report) {
     RETURN_IF_ERROR(open_way(way, o, o.table, &coherent));
     if (way == Way::coherent) {
       print_notes(coherent);
-      if (!no_paper && (coherent.renderer.effects.mask & kNotInTables) != 0) {
+      if (!no_paper && unfollowed_because(coherent.renderer.effects.mask, true)) {
         no_paper = true;
         print_note("the paper's way is left out: its tables do not track which pixels share light");
       }

@@ -4,6 +4,7 @@
 
 #include "engine/frame.h"
 #include "engine/light_map.h"
+#include "plan/resolve.h"
 #include "session/interrupt.h"
 #include "session/measure.h"
 
@@ -67,7 +68,7 @@ Status measure_own_light_ns(Renderer* renderer, std::uint32_t pitch, double* ns)
   RETURN_IF_ERROR(change_settings(renderer, own));
   double trace_ns = 0, add_ns = 0;
   Status status;
-  if (!light_map_unfit(*renderer)) {
+  if (!unshared_because(renderer->effects.mask)) {
     status = measure_pixel_ns(renderer, &trace_ns);
     const OneThread one(renderer);
     if (status.ok) status = measure_adding(renderer, pitch, &add_ns);

@@ -9,8 +9,6 @@
 #include "desktop/sweep/sweep.h"
 #include "effect/setting_list.h"
 #include "engine/frame.h"
-#include "plan/plan_lights.h"
-#include "plan/plan_scene.h"
 #include "platform/instructions.h"
 #include "scene/baked.h"
 #include "session/interrupt.h"
@@ -36,21 +34,18 @@ std::string hash_of(const SceneSource& source, const Scene& scene) {
   return text;
 }
 
-// Returns the settings with the largest memory need among all that a sweep tries.
-Settings dearest(const Scene& scene, Settings settings) {
-  settings.indirect = indirect_choice(Effect::instant_radiosity);
-  settings.resolution = Resolution::half;
-  settings.reconstruction = Reconstruction::cubic;
-  std::uint32_t own = settings.points_per_area_light;
-  for (std::uint32_t points = kPointsPerAreaLightMax; points > own; --points) {
-    settings.points_per_area_light = points;
-    std::uint32_t count;
-    // Planning may add default lights.
-    if (light_point_count(scene, settings, kAllEffects, &count).ok && count + kDefaultLightCount <= kPointLightCountMax)
-      return settings;
-  }
-  settings.points_per_area_light = own;
-  return settings;
+// Plans for the most memory that a sweep needs for each setting.
+Status plan_sweeps(Renderer* renderer, const SceneStorage& storage, const OutputNeed& output) {
+  RETURN_IF_ERROR(plan_renderer(renderer, storage, output));
+  std::vector<Quality> swept;
+  for (const SettingRow& row : kSettingList)
+    for (int i = 0; i < row.sweep.count; ++i) {
+      swept.push_back(renderer->settings);
+      row.field.set(&swept.back(), row.sweep.values[i]);
+    }
+  renderer->settings =
+      widest_settings(renderer->scene, renderer->settings, {swept.data(), static_cast<std::uint32_t>(swept.size())});
+  return plan_renderer(renderer, storage, output);
 }
 
 Status load_cornell(std::uint32_t sphere_columns, Renderer* renderer, SceneStorage* storage) {
@@ -79,9 +74,9 @@ Status open_with(const AccuracyOptions& options, const CommonOptions& common, st
                               common.light == CommonOptions().light && renderer->view.animation == 0;
     if (has_own_look && identify_scene(source, renderer, &identity).ok)
       rig->front_path = front_path(common.scene, identity);
-    renderer->settings = dearest(renderer->scene, renderer->settings);
     return success();
   };
+  hooks.plan = plan_sweeps;
   RETURN_IF_ERROR(open_scene(common, hooks, &rig->opened));
   RETURN_IF_ERROR(start_scene(&rig->opened, common));
   Renderer* renderer = &rig->opened.renderer;

@@ -44,11 +44,8 @@ EffectDecision decide_environment(const EffectCall& c) {
 EffectDecision decide_environment_shadow(const EffectCall& c) {
   if (!shows_environment(c)) return decided(false, "no environment");
   if (c.settings.indirect == IndirectChoice::none) return decided(false, "no indirect light requested");
-  if (c.indirect && has(c.indirect->effects, Effect::radiosity)) return decided(false, "radiosity stores them");
   if (default_lights_cast_shadows(c.scene)) return decided(false, "the default lights cast shadows");
   if (c.settings.environment_shadows == 0) return decided(false, "--environment-shadows 0");
-  if (c.settings.selective_contrast > 0) return decided(false, "selective rendering interpolates pixels");
-  if (c.settings.resolution != Resolution::full) return decided(false, "undersampling reconstructs pixels");
   return by_materials(c, c.census.diffuse, "are diffuse");
 }
 

@@ -12,7 +12,6 @@ EffectDecision decide_supersampling(const EffectCall& c) {
 EffectDecision decide_selective(const EffectCall& c) {
   const float contrast = c.settings.selective_contrast;
   if (contrast == 0) return decided(false, "every pixel traced");
-  if (needs_every_pixel(c)) return decided(false, "instant radiosity needs every pixel");
   return decided(true, "contrasts below %.3g interpolated", static_cast<double>(contrast));
 }
 
@@ -21,11 +20,11 @@ EffectDecision decide_undersampling(const EffectCall& c) {
     case Resolution::full:
       return decided(false, "all of the pixels traced");
     case Resolution::checkerboard:
+      return decided(true, "half of the pixels traced");
     case Resolution::half:
       break;
   }
-  if (needs_every_pixel(c)) return decided(false, "instant radiosity needs every pixel");
-  return decided(true, "%s of the pixels traced", c.settings.resolution == Resolution::half ? "a quarter" : "half");
+  return decided(true, "a quarter of the pixels traced");
 }
 
 EffectDecision decide_animation(const EffectCall& c) {

@@ -38,10 +38,6 @@ EffectDecision by_materials(const EffectCall& call, std::uint32_t count, const c
 // On if there are any: "3 point lights".
 EffectDecision by_count(std::uint32_t count, const char* what);
 
-// True if instant radiosity is the method, which needs every pixel.
-inline bool needs_every_pixel(const EffectCall& call) {
-  return call.indirect && has(call.indirect->effects, Effect::instant_radiosity);
-}
 // True if enough lights are there that --light-tolerance applies.
 bool selects_lights(const EffectCall& call);
 // True if the scene has an environment that is not forced off.

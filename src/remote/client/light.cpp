@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/check.h"
+#include "plan/resolve.h"
 #include "remote/client/parts.h"
 #include "wire/light_coder.h"
 
@@ -224,7 +225,7 @@ Status choose_split(Renderer* renderer, Client* client) {
     const char* reason = mapped_light_unfit(*renderer);
     if (!reason) {
       RETURN_IF_ERROR(set_indirect(renderer, own_indirect(renderer->scene)));
-      reason = light_map_unfit(*renderer);
+      reason = unshared_because(renderer->effects.mask);
     }
     if (reason) log_unfit(client, reason);
     wanted = reason == nullptr;
