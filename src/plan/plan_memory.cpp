@@ -100,8 +100,7 @@ Status plan_memory_with(const Scene& scene, const Settings& settings, const Effe
            is_interleaved(effects.mask)
                ? arena_need<InterleavedPixel>(std::size_t(settings.threads) * kept_pixel_count(settings))
                : 0);
-  add_part(plan, "undersampling", ArenaKind::persistent,
-           lattice_need(settings));
+  add_part(plan, "undersampling", ArenaKind::persistent, lattice_need(settings));
   add_part(plan, "spans", ArenaKind::persistent,
            arena_need<Span>(settings.height) + arena_need<std::uint64_t>(settings.height));
   std::size_t pixel_count = static_cast<std::size_t>(settings.width) * settings.height;
