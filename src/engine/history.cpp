@@ -179,7 +179,7 @@ void begin_history(Renderer* renderer, const FrameTask& task) {
     h->spent_ns = clock.now_ns() - start;
   } else if (task.first_hits) {
     forget_frame(&h->coherence);  // the caller will change the image by them
-    renderer->frame.first_hits = task.first_hits;
+    renderer->frame.kept.first_hits = task.first_hits;
   }
   if (h->spans.all) h->spans.list = whole_frame(renderer);
 }
@@ -190,7 +190,7 @@ void end_frame(Renderer* renderer) {
   if (h->records)
     stop_recording(*renderer->accel.info, &renderer->frame, renderer->tracers);
   else
-    renderer->frame.first_hits = nullptr;
+    renderer->frame.kept.first_hits = nullptr;
   if (h->purpose == FramePurpose::changes) end_changes(renderer);
   if (h->purpose == FramePurpose::shared_rows && h->records) end_rows(renderer);
   h->is_open = h->records = false;

@@ -21,7 +21,7 @@ struct FrameTask {
   FramePurpose purpose = FramePurpose::whole;
   SpanSource source;          // for render_frame(); without next(): frame_source()
   RowRange rows = {0, 0};     // FramePurpose::shared_rows: rows that this machine may trace; empty: all
-  Hit* first_hits = nullptr;  // receives first hits, see FrameData; allowed where nothing is kept
+  Hit* first_hits = nullptr;  // receives first hits, see KeptRays; allowed where nothing is kept
 };
 
 inline FrameTask changes_at(double seconds, const std::atomic<bool>* stop = nullptr) {
@@ -73,8 +73,7 @@ struct History {
 
 // Returns whether the pixels of the frame in progress are traced for the frame that will be kept.
 inline bool is_followed(const History& history) {
-  return history.is_open &&
-         (history.purpose == FramePurpose::changes || history.purpose == FramePurpose::shared_rows);
+  return history.is_open && (history.purpose == FramePurpose::changes || history.purpose == FramePurpose::shared_rows);
 }
 
 // Has the next frame traced whole.

@@ -44,43 +44,43 @@ constexpr float kDisplayFlare = 2 * 0.025f;
 
 void choose_kernels(Renderer* renderer) {
   renderer->frame.scene = &renderer->scene;
-  renderer->frame.accel_info = renderer->accel.info;
-  renderer->frame.first_rays = renderer->accel.info;
-  renderer->frame.first_hits = nullptr;
-  renderer->frame.compensation_paths = nullptr;
-  renderer->frame.ray_by_ray = false;
+  renderer->frame.geometry.accel_info = renderer->accel.info;
+  renderer->frame.geometry.first_rays = renderer->accel.info;
+  renderer->frame.kept.first_hits = nullptr;
+  renderer->frame.kept.compensation_paths = nullptr;
+  renderer->frame.geometry.ray_by_ray = false;
   renderer->frame.settings = renderer->settings;
   renderer->frame.mask = renderer->effects.mask;
-  renderer->frame.surface = find_surface_function(renderer->effects.mask);
-  renderer->frame.first_surface = renderer->frame.surface;
-  renderer->frame.add_later_light =
+  renderer->frame.kernels.surface = find_surface_function(renderer->effects.mask);
+  renderer->frame.kernels.first_surface = renderer->frame.kernels.surface;
+  renderer->frame.kernels.add_later_light =
       has(renderer->effects.mask, Effect::instant_radiosity) ? add_later_virtual_light : nullptr;
   find_texture_functions(&renderer->frame);
   find_surroundings(&renderer->frame);
   if (renderer->effects.mask & kMapEffects & kEffectsBuilt)
     add_material_maps(&renderer->frame);
-  else if (renderer->frame.surroundings)
+  else if (renderer->frame.kernels.surroundings)
     add_surroundings(&renderer->frame);
-  renderer->frame.trace_strip = is_interleaved(renderer->effects.mask)           ? trace_interleaved
-                                : has(renderer->effects.mask, Effect::selective) ? trace_selectively
-                                                                                 : nullptr;
-  renderer->frame.trace_lattice_strip = nullptr;
+  renderer->frame.kernels.trace_strip = is_interleaved(renderer->effects.mask)           ? trace_interleaved
+                                        : has(renderer->effects.mask, Effect::selective) ? trace_selectively
+                                                                                         : nullptr;
+  renderer->frame.kernels.trace_lattice_strip = nullptr;
   if (has(renderer->effects.mask, Effect::undersampling)) {
-    renderer->frame.trace_lattice_strip = renderer->frame.trace_strip;
-    renderer->frame.trace_strip = trace_lattice;
+    renderer->frame.kernels.trace_lattice_strip = renderer->frame.kernels.trace_strip;
+    renderer->frame.kernels.trace_strip = trace_lattice;
   }
-  renderer->frame.radiance = find_radiance_function(renderer->effects.mask);
-  renderer->frame.find_shadows = !has(renderer->effects.mask, Effect::shadow)            ? nullptr
-                                 : has(renderer->effects.mask, Effect::source_selection) ? find_tile_surfaces
-                                                                                         : find_tile_shadows;
-  CHECK(renderer->frame.surface != nullptr && renderer->frame.radiance != nullptr);
+  renderer->frame.kernels.radiance = find_radiance_function(renderer->effects.mask);
+  renderer->frame.kernels.find_shadows = !has(renderer->effects.mask, Effect::shadow)            ? nullptr
+                                         : has(renderer->effects.mask, Effect::source_selection) ? find_tile_surfaces
+                                                                                                 : find_tile_shadows;
+  CHECK(renderer->frame.kernels.surface != nullptr && renderer->frame.kernels.radiance != nullptr);
   make_filters(&renderer->frame);
 }
 
 void light_scene(Renderer* renderer) {
   CHECK_GT(renderer->view.exposure, 0);
   CHECK_LE(renderer->lights.points.count, renderer->lights.point_count_max);
-  renderer->frame.beyond_depth = radiance_beyond_depth(renderer->scene.info, renderer->effects.mask);
+  renderer->frame.cut_off.beyond_depth = radiance_beyond_depth(renderer->scene.info, renderer->effects.mask);
   if (has(renderer->effects.mask, Effect::environment_shadow) &&
       renderer->lights.environment->wanted != renderer->settings.environment_shadows)
     place_environment_lights(renderer->scene, renderer->settings.environment_shadows, renderer->lights.environment);
@@ -91,7 +91,7 @@ void light_scene(Renderer* renderer) {
     if (has(renderer->effects.mask, Effect::instant_radiosity) && virtual_lights_of(renderer->frame.indirect)->area < 0)
       measure_walks(renderer->frame, lights, renderer->lights.points);
     place_lights(lights, opened_materials(*renderer), renderer->lights.points, &renderer->frame);
-    CHECK_LE(renderer->frame.lights.count, renderer->lights.points.count);
+    CHECK_LE(renderer->frame.lights.points.count, renderer->lights.points.count);
     if (has(renderer->effects.mask, Effect::area_light)) {
       place_point_groups(renderer->lights.point_groups, renderer->lights.point_order, renderer->lights.point_place,
                          &renderer->frame);
@@ -100,26 +100,26 @@ void light_scene(Renderer* renderer) {
     if (has(renderer->effects.mask, Effect::source_selection))
       place_light_tree(renderer->lights.nodes, renderer->lights.order, &renderer->frame);
     if (has(renderer->effects.mask, Effect::instant_radiosity)) {
-      renderer->frame.cone = {0, 0};  // belongs to the last frame's camera, which the lights' walks ignore
+      renderer->frame.view.cone = {0, 0};  // belongs to the last frame's camera, which the lights' walks ignore
       place_virtual_lights(&renderer->frame);
     }
     bool spawns = has(renderer->effects.mask, Effect::mirror) || has(renderer->effects.mask, Effect::refraction) ||
                   has(renderer->effects.mask, Effect::alpha_blend);
-    renderer->frame.radiance_bounds = spawns ? radiance_bounds(renderer->frame) : RadianceBounds{};
+    renderer->frame.cut_off.radiance_bounds = spawns ? radiance_bounds(renderer->frame) : RadianceBounds{};
     renderer->lights.lit_settings = renderer->settings;
     renderer->lights.lit_mask = renderer->effects.mask;
   }
-  if ((renderer->frame.point_groups.groups.count || renderer->frame.light_polygons.count) &&
-      renderer->frame.find_shadows)
-    renderer->frame.find_shadows = find_lamp_tile_shadows;
+  if ((renderer->frame.lights.point_groups.groups.count || renderer->frame.lights.polygons.count) &&
+      renderer->frame.kernels.find_shadows)
+    renderer->frame.kernels.find_shadows = find_lamp_tile_shadows;
   const float white = 1 / renderer->view.exposure;
   renderer->frame.selection = {renderer->settings.selective_contrast, white, kDisplayFlare * white};
   FrameData& frame = renderer->frame;
-  frame.left_out_max = 2 * kHalfLevel * renderer->settings.cut_off_levels / renderer->view.exposure;
+  frame.cut_off.left_out_max = 2 * kHalfLevel * renderer->settings.cut_off_levels / renderer->view.exposure;
   const bool branches = renderer->settings.ray_depth > 0 && has_branches(opened_scene(*renderer));
-  frame.left_out_slope = branches ? kLevelSlope * frame.left_out_max * renderer->view.exposure : 0;
-  CHECK_GE(frame.left_out_max, 0);
-  frame.dark_radiance = kDarkLevels / renderer->view.exposure;
+  frame.cut_off.left_out_slope = branches ? kLevelSlope * frame.cut_off.left_out_max * renderer->view.exposure : 0;
+  CHECK_GE(frame.cut_off.left_out_max, 0);
+  frame.cut_off.dark_radiance = kDarkLevels / renderer->view.exposure;
 }
 
 void make_tracers(Renderer* renderer) {
@@ -151,12 +151,13 @@ Status aim_camera(Renderer* renderer) {
       renderer->view.camera.vertical_fov = static_cast<float>(renderer->view.look.vertical_fov);
   }
   RETURN_IF_ERROR(make_camera_rays(renderer->view.camera, renderer->settings.width, renderer->settings.height,
-                                   &renderer->frame.camera));
+                                   &renderer->frame.view.camera));
   if (has(renderer->effects.mask, Effect::mip_map))
-    renderer->frame.cone = pixel_cone(renderer->frame.camera, renderer->settings.samples_per_pixel);
-  renderer->frame.eye_media = MediumStack();
+    renderer->frame.view.cone = pixel_cone(renderer->frame.view.camera, renderer->settings.samples_per_pixel);
+  renderer->frame.view.eye_media = MediumStack();
   if (has(renderer->effects.mask, Effect::refraction))
-    renderer->frame.eye_media = media_at(renderer->frame, renderer->frame.camera.eye, renderer->frame.camera.forward);
+    renderer->frame.view.eye_media =
+        media_at(renderer->frame, renderer->frame.view.camera.eye, renderer->frame.view.camera.forward);
   return success();
 }
 

@@ -114,7 +114,7 @@ bool find_surface(Tracer* tracer, const Hit* first_hits, std::uint32_t sample, s
   if (first_hits)
     hit = first_hits[(std::size_t(sample) * settings.height + row) * settings.width + column];
   else
-    frame.first_rays->closest(frame.accel, ray, visible_filter(frame), &hit, &tracer->stats);
+    frame.geometry.first_rays->closest(frame.geometry.accel, ray, visible_filter(frame), &hit, &tracer->stats);
   if (hit.triangle == kNoTriangle) return false;
   float passed;
   if (!visible_surface(tracer, &ray, &hit, s, &passed) || !takes_indirect_light(*s)) return false;
@@ -142,7 +142,7 @@ bool add_to_row(void* context, std::uint32_t thread, std::uint32_t row) {
       Vec2 place;
       Vec3 light;
       if (!find_surface(tracer, rows.first_hits, sample, column, row, &s)) continue;
-      if (!place_in_map(rows.map, frame.camera, rows.is_of_frame, column, row, s.point, &place)) continue;
+      if (!place_in_map(rows.map, frame.view.camera, rows.is_of_frame, column, row, s.point, &place)) continue;
       if (!light_at(rows.map, s, place, &light)) continue;
       Vec3 more = s.diffuse * (light - indirect_light(tracer, s));
       if (has(frame.mask, Effect::clear_coat)) more = more * s.coat.passes;
@@ -196,12 +196,12 @@ void add_mapped_light(Renderer* renderer, const Hit* first_hits, const LightMap&
   CHECK(row_begin <= row_end && row_end <= renderer->settings.height);
   CHECK(first_hits != nullptr);
   CHECK(map.surface != nullptr && map.light != nullptr && unshared_because(renderer->effects.mask) == nullptr);
-  RowsOfLight rows = {renderer, first_hits, map, same_camera(map.camera, renderer->frame.camera)};
+  RowsOfLight rows = {renderer, first_hits, map, same_camera(map.camera, renderer->frame.view.camera)};
   share_items(renderer->workers, row_begin, row_end, add_to_row, &rows);
 }
 
 bool is_map_of_frame(const LightMap& map, const Renderer& renderer, double seconds) {
-  return map.seconds == seconds && same_camera(map.camera, renderer.frame.camera);
+  return map.seconds == seconds && same_camera(map.camera, renderer.frame.view.camera);
 }
 
 }  // namespace pocketray

@@ -10,8 +10,8 @@ namespace {
 // An accelerator without refit is rebuilt, in memory that plan_memory() reserved.
 void follow_motion(Renderer* renderer) {
   CHECK(renderer->accel.info != nullptr);  // it has been planned
-  CHECK_EQ(renderer->frame.positions.count, renderer->scene.positions.count);
-  renderer->accel.built.positions = renderer->frame.positions;
+  CHECK_EQ(renderer->frame.geometry.positions.count, renderer->scene.positions.count);
+  renderer->accel.built.positions = renderer->frame.geometry.positions;
   if (renderer->accel.info->refit) return renderer->accel.info->refit(&renderer->accel.built, renderer->accel.data);
   Arena keep = make_arena("accelerator", renderer->accel.data.data, renderer->accel.data.bytes());
   renderer->accel.info->build(&renderer->accel.built, &keep, &renderer->memory.frame);
@@ -30,15 +30,16 @@ void change_posed_materials(Renderer* renderer) {
 }
 
 void pose_at_time(Renderer* renderer, double seconds) {
-  renderer->frame.positions = renderer->scene.positions;
-  renderer->frame.normals =
+  renderer->frame.geometry.positions = renderer->scene.positions;
+  renderer->frame.geometry.normals =
       has(renderer->effects.mask, Effect::smooth_normal) ? renderer->scene.normals : Array<const Vec3>();
   if (!has(renderer->effects.mask, Effect::animation) || !is_animated(renderer->scene)) return;
   effect_entered<Effect::animation>();
   pose_at(opened_scene(*renderer), renderer->view.animation, seconds, &renderer->pose);
   if (renderer->pose.materials.count) change_posed_materials(renderer);
-  if (renderer->pose.positions.count) renderer->frame.positions = renderer->pose.positions;
-  if (renderer->frame.normals.count && renderer->pose.normals.count) renderer->frame.normals = renderer->pose.normals;
+  if (renderer->pose.positions.count) renderer->frame.geometry.positions = renderer->pose.positions;
+  if (renderer->frame.geometry.normals.count && renderer->pose.normals.count)
+    renderer->frame.geometry.normals = renderer->pose.normals;
 }
 
 }  // namespace
@@ -55,7 +56,7 @@ void accelerate(Renderer* renderer) {
   if (renderer->pose.positions.count) follow_motion(renderer);
   wait_for_pace(&renderer->pace, 0, start);
   renderer->timings.refit_ms = static_cast<double>(renderer->pace.clock->now_ns() - start) * 1e-6;
-  renderer->frame.accel = renderer->accel.built;
+  renderer->frame.geometry.accel = renderer->accel.built;
 }
 
 }  // namespace pocketray

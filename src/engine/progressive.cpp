@@ -28,8 +28,8 @@ struct Refinement {
 
 // Returns whether each pixel costs as much without its neighbours as with them.
 bool are_pixels_separate(const FrameData& frame) {
-  if (frame.trace_strip) return false;
-  return frame.ray_by_ray || frame.accel_info->packets_by_rays || frame.camera.orthographic;
+  if (frame.kernels.trace_strip) return false;
+  return frame.geometry.ray_by_ray || frame.geometry.accel_info->packets_by_rays || frame.view.camera.orthographic;
 }
 bool leaves_out_coarser(const Refinement& r) {
   return r.progressive->step < kCoarsestStep && !r.progressive->is_afresh && are_pixels_separate(r.renderer->frame);

@@ -301,8 +301,8 @@ bool probe_exposure(Renderer* renderer, ExposureProbe* p, std::uint32_t pixel_co
   std::uint32_t columns = places(renderer->settings.width), count = columns * places(renderer->settings.height),
                 begin = p->next;
   FrameData frame = renderer->frame;
-  frame.first_hits = nullptr;
-  if (frame.mask & kInterpolatingEffects) frame.trace_strip = nullptr;
+  frame.kept.first_hits = nullptr;
+  if (frame.mask & kInterpolatingEffects) frame.kernels.trace_strip = nullptr;
   Tracer tracer = make_tracer(frame);
   tracer.light_entries = renderer->tracers[0].light_entries;
   for (; p->next < count && p->next - begin < pixel_count_max; ++p->next) {

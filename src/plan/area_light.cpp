@@ -22,8 +22,8 @@ struct Emitter {
 
 double triangle_area(const FrameData& frame, std::uint32_t triangle) {
   const Triangle& t = frame.scene->triangles[triangle];
-  Vec3 e1 = frame.positions[t.vertex(1)] - frame.positions[t.vertex(0)];
-  Vec3 e2 = frame.positions[t.vertex(2)] - frame.positions[t.vertex(0)];
+  Vec3 e1 = frame.geometry.positions[t.vertex(1)] - frame.geometry.positions[t.vertex(0)];
+  Vec3 e2 = frame.geometry.positions[t.vertex(2)] - frame.geometry.positions[t.vertex(0)];
   // Scaled by a power of two, which is exact, so that edges of any length stay in range.
   int exponent;
   std::frexp(max_component(max(abs(e1), abs(e2))), &exponent);
@@ -38,7 +38,9 @@ Emitter emitter_at(const FrameData& frame, const Lamp& lamp, std::uint32_t trian
   Emitter e = {triangle, false, triangle_area(frame, triangle), {0, 0}};
   if (!is_part_of(scene, lamp, triangle + 1)) return e;
   const Triangle &t = scene.triangles[triangle], &next = scene.triangles[triangle + 1];
-  auto corner = [&](const Triangle& of, std::uint32_t i) -> const Vec3& { return frame.positions[of.vertex(i % 3)]; };
+  auto corner = [&](const Triangle& of, std::uint32_t i) -> const Vec3& {
+    return frame.geometry.positions[of.vertex(i % 3)];
+  };
   for (std::uint32_t i = 0; i < 3; ++i) {
     const Vec3 &a = corner(t, i), &b = corner(t, i + 1), &c = corner(t, i + 2);
     for (std::uint32_t k = 0; k < 3; ++k) {
@@ -91,7 +93,8 @@ void place_on_emitter(const Emitter& e, const UnitCell& cell, std::uint32_t* tri
 
 Vec3 surface_point(const FrameData& frame, std::uint32_t triangle, float u, float v) {
   const Triangle& t = frame.scene->triangles[triangle];
-  const Vec3 &a = frame.positions[t.vertex(0)], &b = frame.positions[t.vertex(1)], &c = frame.positions[t.vertex(2)];
+  const Vec3 &a = frame.geometry.positions[t.vertex(0)], &b = frame.geometry.positions[t.vertex(1)],
+             &c = frame.geometry.positions[t.vertex(2)];
   return a * (1 - u - v) + b * u + c * v;
 }
 
@@ -100,7 +103,8 @@ Vec3 surface_point(const FrameData& frame, std::uint32_t triangle, float u, floa
 // the range of float. Returns the squared distance.
 double nearest_point(const FrameData& frame, std::uint32_t triangle, const Vec3& p, float* u, float* v) {
   const Triangle& t = frame.scene->triangles[triangle];
-  const Vec3 &a = frame.positions[t.vertex(0)], &b = frame.positions[t.vertex(1)], &c = frame.positions[t.vertex(2)];
+  const Vec3 &a = frame.geometry.positions[t.vertex(0)], &b = frame.geometry.positions[t.vertex(1)],
+             &c = frame.geometry.positions[t.vertex(2)];
   const Vec3 ab = b - a, ac = c - a, ap = p - a, bp = p - b, cp = p - c;
   auto product = [](const Vec3& l, const Vec3& r) {
     return static_cast<double>(l.x) * r.x + static_cast<double>(l.y) * r.y + static_cast<double>(l.z) * r.z;
@@ -134,7 +138,8 @@ LightPoint point_on(const FrameData& frame, const Emitter& e, std::uint32_t tria
   const Scene& scene = *frame.scene;
   const Triangle& t = scene.triangles[triangle];
   const Material& m = scene.materials[t.material()];
-  const Vec3 &a = frame.positions[t.vertex(0)], &b = frame.positions[t.vertex(1)], &c = frame.positions[t.vertex(2)];
+  const Vec3 &a = frame.geometry.positions[t.vertex(0)], &b = frame.geometry.positions[t.vertex(1)],
+             &c = frame.geometry.positions[t.vertex(2)];
   LightPoint p = {};
   p.position = surface_point(frame, triangle, u, v);
   p.direction = normalize(cross(b - a, c - a));

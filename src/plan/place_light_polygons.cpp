@@ -6,6 +6,7 @@
 
 #include "base/check.h"
 #include "plan/area_light.h"
+#include "shade/frame_data.h"
 #include "shade/lights.h"
 
 namespace pocketray {
@@ -44,7 +45,8 @@ bool find_outline(const FrameData& frame, const Lamp& lamp, Outline* outline) {
   for (std::uint32_t triangle = lamp.begin; triangle < lamp.end; ++triangle) {
     if (!is_part_of(*frame.scene, lamp, triangle)) continue;
     const Triangle& t = frame.scene->triangles[triangle];
-    const Vec3 &a = frame.positions[t.vertex(0)], &b = frame.positions[t.vertex(1)], &c = frame.positions[t.vertex(2)];
+    const Vec3 &a = frame.geometry.positions[t.vertex(0)], &b = frame.geometry.positions[t.vertex(1)],
+               &c = frame.geometry.positions[t.vertex(2)];
     const Vec3d area = area_vector_of(a, b, c);
     if (is_zero(area)) continue;
     if (++triangles > kTrianglesMax) return false;
@@ -78,7 +80,8 @@ bool is_flat(const FrameData& frame, const Lamp& lamp, const LightPolygon& polyg
   for (std::uint32_t triangle = lamp.begin; triangle < lamp.end; ++triangle) {
     if (!is_part_of(*frame.scene, lamp, triangle)) continue;
     const Triangle& t = frame.scene->triangles[triangle];
-    const Vec3 &a = frame.positions[t.vertex(0)], &b = frame.positions[t.vertex(1)], &c = frame.positions[t.vertex(2)];
+    const Vec3 &a = frame.geometry.positions[t.vertex(0)], &b = frame.geometry.positions[t.vertex(1)],
+               &c = frame.geometry.positions[t.vertex(2)];
     const Vec3d area = area_vector_of(a, b, c);
     if (is_zero(area)) continue;
     if (!(dot(area, to_double(polygon.normal)) > 0)) return false;  // folded
@@ -137,11 +140,11 @@ std::uint32_t light_polygon_count(const Scene& scene, EffectMask mask) {
 
 void place_light_polygons(Array<const Material> lamps, Array<LightPolygon> polygons, FrameData* frame) {
   CHECK(frame != nullptr);
-  frame->light_polygons = {};
-  if (frame->settings.area_irradiance == AreaIrradiance::points || frame->light_run_count == 0 ||
+  frame->lights.polygons = {};
+  if (frame->settings.area_irradiance == AreaIrradiance::points || frame->lights.run_count == 0 ||
       has(frame->mask, Effect::source_selection))
     return;
-  LightRun& run = frame->light_runs[frame->light_run_count - 1];
+  LightRun& run = frame->lights.runs[frame->lights.run_count - 1];
   if (run.sample != find_light_sampler(Effect::area_light)) return;
   const std::uint32_t n = frame->settings.points_per_area_light;
   CHECK(n >= 1 && (run.end - run.begin) % n == 0);
@@ -153,14 +156,14 @@ void place_light_polygons(Array<const Material> lamps, Array<LightPolygon> polyg
     if (!(lamp_area(*frame, lamp) > 0)) return;  // it has no points
     CHECK_LT(i, count);
     LightPolygon polygon = {};
-    const bool is_polygon = make_polygon(*frame, lamp, &frame->lights[run.begin + i * n], n, &polygon);
+    const bool is_polygon = make_polygon(*frame, lamp, &frame->lights.points[run.begin + i * n], n, &polygon);
     polygons[i++] = is_polygon ? polygon : LightPolygon{};
     any = any || is_polygon;
   });
   CHECK_EQ(i, count);
   if (!any) return;
   run.polygons = polygons.data;
-  frame->light_polygons = {polygons.data, count};
+  frame->lights.polygons = {polygons.data, count};
 }
 
 }  // namespace pocketray

@@ -1,8 +1,12 @@
 // Flat lamps as polygons, see shade/polygon_light.h.
 #pragma once
-#include "shade/frame_data.h"
+#include "effect/effect.h"
+#include "scene/scene.h"
+#include "shade/light_polygon.h"
 
 namespace pocketray {
+
+struct FrameData;
 
 // Number of polygons to reserve for a scene's lamps, one for each.
 std::uint32_t light_polygon_count(const Scene& scene, EffectMask mask);

@@ -5,6 +5,7 @@
 
 #include "base/check.h"
 #include "base/fmath.h"
+#include "shade/frame_data.h"
 #include "shade/lights.h"
 
 namespace pocketray {
@@ -78,16 +79,16 @@ std::uint32_t build(TreeBuilder* b, std::uint32_t begin, std::uint32_t end) {
 
 void place_light_tree(Array<LightNode> nodes, Array<std::uint32_t> order, FrameData* frame) {
   CHECK(frame != nullptr);
-  CHECK(frame->lights.count <= nodes.count && frame->lights.count <= order.count);
-  TreeBuilder b = {frame->lights, nodes, order};
-  for (std::uint32_t i = 0; i < frame->lights.count; ++i) order[i] = i;
-  for (int r = 0; r < frame->light_run_count; ++r) {
-    const LightRun& run = frame->light_runs[r];
+  CHECK(frame->lights.points.count <= nodes.count && frame->lights.points.count <= order.count);
+  TreeBuilder b = {frame->lights.points, nodes, order};
+  for (std::uint32_t i = 0; i < frame->lights.points.count; ++i) order[i] = i;
+  for (int r = 0; r < frame->lights.run_count; ++r) {
+    const LightRun& run = frame->lights.runs[r];
     const bool everywhere = run.sample == find_light_sampler(Effect::directional_light);
-    frame->light_tree.roots[r] = everywhere ? kNone : build(&b, run.begin, run.end);
+    frame->lights.tree.roots[r] = everywhere ? kNone : build(&b, run.begin, run.end);
   }
-  frame->light_tree.nodes = {nodes.data, b.node_count};
-  frame->light_tree.order = {order.data, frame->lights.count};
+  frame->lights.tree.nodes = {nodes.data, b.node_count};
+  frame->lights.tree.order = {order.data, frame->lights.points.count};
 }
 
 }  // namespace pocketray

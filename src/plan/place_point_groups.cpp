@@ -4,6 +4,7 @@
 
 #include "base/check.h"
 #include "base/limits.h"
+#include "shade/frame_data.h"
 #include "shade/lights.h"
 #include "shade/point_groups.h"
 
@@ -97,19 +98,19 @@ std::uint16_t build(GroupBuilder* b, std::uint32_t begin, std::uint32_t end) {
 void place_point_groups(Array<PointGroup> groups, Array<std::uint8_t> order, Array<std::uint8_t> place,
                         FrameData* frame) {
   CHECK(frame != nullptr);
-  frame->point_groups = {};
+  frame->lights.point_groups = {};
   const std::uint32_t n = frame->settings.points_per_area_light;
-  if (frame->settings.area_shadows == AreaShadows::every || n <= kUndividedMax || frame->light_run_count == 0 ||
+  if (frame->settings.area_shadows == AreaShadows::every || n <= kUndividedMax || frame->lights.run_count == 0 ||
       has(frame->mask, Effect::source_selection))
     return;
-  const LightRun& run = frame->light_runs[frame->light_run_count - 1];
+  const LightRun& run = frame->lights.runs[frame->lights.run_count - 1];
   if (run.sample != find_light_sampler(Effect::area_light)) return;
-  PointGroups& all = frame->point_groups;
+  PointGroups& all = frame->lights.point_groups;
   const std::uint32_t point_count = run.end - run.begin;
   CHECK(n <= kPointsPerAreaLightMax && point_count % n == 0);
   CHECK(point_count <= groups.count && point_count <= order.count && point_count <= place.count);
   for (std::uint32_t first = 0; first < point_count; first += n) {
-    GroupBuilder b = {&frame->lights[run.begin + first], &order[first], &groups[first]};
+    GroupBuilder b = {&frame->lights.points[run.begin + first], &order[first], &groups[first]};
     for (std::uint32_t i = 0; i < n; ++i) b.order[i] = static_cast<std::uint8_t>(i);
     build(&b, 0, n);
     for (std::uint32_t i = 0; i < n; ++i) place[first + b.order[i]] = static_cast<std::uint8_t>(i);

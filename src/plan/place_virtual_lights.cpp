@@ -85,7 +85,7 @@ Vec3d flux_of(const FrameData& frame, const LightRun& run, const LightPoint& lig
   Vec3d intensity = to_double(light.intensity);
   if (light.material != kNone) return intensity * (kPi * (light.two_sided ? 2 : 1));
   if (run.sample == find_light_sampler(Effect::directional_light)) {
-    const Surroundings s = surroundings_of(frame.accel.bounds);
+    const Surroundings s = surroundings_of(frame.geometry.accel.bounds);
     const Vec3d size = s.high - s.low;
     return intensity * (kPi * 0.25 * dot(size, size));
   }
@@ -107,7 +107,7 @@ Particle emit(const FrameData& frame, const LightRun& run, const LightPoint& lig
     // Moved off the emitter by far more than rounding.
     p.ray.origin += to_float(axis) * (max_component(abs(light.position)) * 0x1p-18f);
   } else if (run.sample == find_light_sampler(Effect::directional_light)) {
-    const Surroundings s = surroundings_of(frame.accel.bounds);
+    const Surroundings s = surroundings_of(frame.geometry.accel.bounds);
     Vec3d tangent, bitangent;
     double radius = 0.5 * length(s.high - s.low), r = radius * std::sqrt(u), phi = 2 * kPi * v;
     axis = normalize(axis);
@@ -164,10 +164,10 @@ void follow(const FrameData& frame, Particle particle, Walk* walk, VirtualLights
   TraceStats stats;
   for (std::uint32_t bounce = 0; bounce < kBounceMax; ++bounce) {
     Hit hit;
-    frame.accel_info->closest(frame.accel, particle.ray, visible_filter(frame), &hit, &stats);
+    frame.geometry.accel_info->closest(frame.geometry.accel, particle.ray, visible_filter(frame), &hit, &stats);
     if (hit.triangle == kNoTriangle) return;
     Surface s;
-    frame.first_surface(frame, particle.ray, hit, &s);
+    frame.kernels.first_surface(frame, particle.ray, hit, &s);
     particle.flux = particle.flux * window_at(bounce == 0 ? particle.range : 0, hit.t);
     if (!is_zero(s.diffuse) && lights->count < kVirtualLightRoom) {
       Vec3d intensity = particle.flux * to_double(s.diffuse) * (1 / kPi);
@@ -192,7 +192,7 @@ std::uint32_t morton_code(const Surroundings& s, const Vec3& p) {
 
 // Sorts lights so that neighbours in space are adjacent, by insertion, which is stable.
 void sort_lights(const FrameData& frame, VirtualLights* lights) {
-  const Surroundings surroundings = surroundings_of(frame.accel.bounds);
+  const Surroundings surroundings = surroundings_of(frame.geometry.accel.bounds);
   CHECK_LE(lights->count, kVirtualLightRoom);
   std::uint32_t code[kVirtualLightRoom];
   for (std::uint32_t i = 0; i < lights->count; ++i) {
@@ -224,9 +224,9 @@ double surface_area(const FrameData& frame) {
   double area = 0;
   for (const Triangle& t : frame.scene->triangles) {
     if (is_zero(frame.scene->materials[t.material()].diffuse)) continue;
-    Vec3d a = to_double(frame.positions[t.vertex(0)]);
-    area +=
-        0.5 * length(cross(to_double(frame.positions[t.vertex(1)]) - a, to_double(frame.positions[t.vertex(2)]) - a));
+    Vec3d a = to_double(frame.geometry.positions[t.vertex(0)]);
+    area += 0.5 * length(cross(to_double(frame.geometry.positions[t.vertex(1)]) - a,
+                               to_double(frame.geometry.positions[t.vertex(2)]) - a));
   }
   return area;
 }
@@ -235,11 +235,11 @@ double surface_area(const FrameData& frame) {
 bool pick(const FrameData& frame, double total, double u, const LightRun** run, const LightPoint** light,
           double* probability) {
   double left = u * total;
-  for (int r = 0; r < frame.light_run_count; ++r)
-    for (std::uint32_t i = frame.light_runs[r].begin; i < frame.light_runs[r].end; ++i) {
-      double share = max_component(flux_of(frame, frame.light_runs[r], frame.lights[i]));
+  for (int r = 0; r < frame.lights.run_count; ++r)
+    for (std::uint32_t i = frame.lights.runs[r].begin; i < frame.lights.runs[r].end; ++i) {
+      double share = max_component(flux_of(frame, frame.lights.runs[r], frame.lights.points[i]));
       if (!(share > 0)) continue;
-      *run = &frame.light_runs[r], *light = &frame.lights[i], *probability = share / total;
+      *run = &frame.lights.runs[r], *light = &frame.lights.points[i], *probability = share / total;
       if (left < share) return true;
       left -= share;
     }
@@ -249,9 +249,9 @@ bool pick(const FrameData& frame, double total, double u, const LightRun** run, 
 // Total flux of all lights.
 double total_flux(const FrameData& frame) {
   double total = 0;
-  for (int r = 0; r < frame.light_run_count; ++r)
-    for (std::uint32_t i = frame.light_runs[r].begin; i < frame.light_runs[r].end; ++i)
-      total += max_component(flux_of(frame, frame.light_runs[r], frame.lights[i]));
+  for (int r = 0; r < frame.lights.run_count; ++r)
+    for (std::uint32_t i = frame.lights.runs[r].begin; i < frame.lights.runs[r].end; ++i)
+      total += max_component(flux_of(frame, frame.lights.runs[r], frame.lights.points[i]));
   return total;
 }
 
@@ -277,8 +277,8 @@ void measure_walks(const FrameData& frame, Array<const Light> scene_lights, Arra
   plain.settings = Settings();
   plain.settings.points_per_area_light = 1;
   plain.mask = frame.mask & kLights;
-  plain.first_surface = find_surface_function(0);
-  plain.visible_filter = HitFilter();
+  plain.kernels.first_surface = find_surface_function(0);
+  plain.filters.visible = HitFilter();
   place_lights(scene_lights, frame.scene->materials, points, &plain);
   const double total = total_flux(plain);
   lights->lights_per_walk = 0;
@@ -294,7 +294,7 @@ void measure_walks(const FrameData& frame, Array<const Light> scene_lights, Arra
 }
 
 void place_virtual_lights(FrameData* frame) {
-  CHECK(frame != nullptr && frame->first_surface != nullptr);
+  CHECK(frame != nullptr && frame->kernels.first_surface != nullptr);
   VirtualLights* lights = virtual_lights_of(frame->indirect);
   CHECK(lights != nullptr && lights->area >= 0);
   const double wanted = frame->settings.virtual_lights, per_walk = lights->lights_per_walk;

@@ -9,7 +9,7 @@ namespace pocketray {
 namespace {
 
 constexpr Effect kKinds[] = {Effect::point_light, Effect::spot_light, Effect::directional_light, Effect::area_light};
-static_assert(sizeof kKinds / sizeof kKinds[0] == sizeof FrameData::light_runs / sizeof(LightRun), "a run for each");
+static_assert(sizeof kKinds / sizeof kKinds[0] == sizeof Lights::runs / sizeof(LightRun), "a run for each");
 
 Effect effect_of(LightKind kind) {
   return kind == LightKind::point  ? Effect::point_light
@@ -48,7 +48,7 @@ void place_lights(Array<const Light> lights, Array<const Material> lamps, Array<
   CHECK(frame != nullptr && frame->scene != nullptr);
   CHECK_EQ(lamps.count, frame->scene->materials.count);
   std::uint32_t count = 0;
-  frame->light_run_count = 0;
+  frame->lights.run_count = 0;
   for (Effect kind : kKinds) {
     if (!has(frame->mask, kind)) continue;
     std::uint32_t begin = count;
@@ -60,9 +60,10 @@ void place_lights(Array<const Light> lights, Array<const Material> lamps, Array<
         if (effect_of(light.kind) == kind) points[count++] = to_point(light);
     }
     CHECK_LE(count, points.count);
-    if (count > begin) frame->light_runs[frame->light_run_count++] = {begin, count, find_light_sampler(kind), nullptr};
+    if (count > begin)
+      frame->lights.runs[frame->lights.run_count++] = {begin, count, find_light_sampler(kind), nullptr};
   }
-  frame->lights = {points.data, count};
+  frame->lights.points = {points.data, count};
 }
 
 }  // namespace pocketray

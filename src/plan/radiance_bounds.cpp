@@ -13,6 +13,7 @@
 #include "indirect/environment.h"
 #include "scene/metallic_roughness.h"
 #include "shade/dielectric.h"
+#include "shade/frame_data.h"
 #include "shade/lights.h"
 
 namespace pocketray {
@@ -55,7 +56,7 @@ MaterialBound material_bound(const FrameData& frame, std::uint32_t index) {
   CHECK_LT(m.brdf, kBrdfCount);
   const BrdfInfo* lobe = kBrdfList[m.brdf];
   if (has(frame.mask, Effect::anisotropy) && has_grain(scene, index)) lobe = lobe->with_grain;
-  const float linear = frame.light_polygons.count && lobe->linear ? kLinearPeakMax : 1;
+  const float linear = frame.lights.polygons.count && lobe->linear ? kLinearPeakMax : 1;
   if (!is_zero(m.specular)) f = f * lobe->diffuse_max + max_component(lobe->peak(m)) * linear;
   if (coat && has_lobe(*coat)) f += coat->strength * max_component(kBrdfList[kGgx]->peak(coat_bounds(*coat)));
   bound.scattered = f;
@@ -105,7 +106,7 @@ float triangle_irradiance(const void* context, std::uint32_t triangle) {
   Box box = empty_box();
   float height = 0;
   for (std::uint32_t v : t.vertices()) {
-    const Vec3& p = reach.frame->positions[v];
+    const Vec3& p = reach.frame->geometry.positions[v];
     box = merge(box, p);
     if (!reach.is_area) continue;
     float h = dot(p - reach.light->position, reach.light->direction);
@@ -135,7 +136,8 @@ float irradiance_bound(const FrameData& frame, const LightPoint& light, Effect k
   if (!(intensity > 0)) return 0;
   if (kind == Effect::directional_light) return intensity;
   const LightReach reach = {&frame, &light, kind == Effect::area_light, positions};
-  const float most = frame.accel_info->largest(frame.accel, {&reach, box_irradiance, triangle_irradiance});
+  const float most =
+      frame.geometry.accel_info->largest(frame.geometry.accel, {&reach, box_irradiance, triangle_irradiance});
   return most < kRadianceMax ? most : kRadianceMax;
 }
 
@@ -154,11 +156,11 @@ float lamp_bound(const FrameData& frame, const LightPolygon& polygon, LightPoint
 // Upper bound of the irradiance by all lights.
 float irradiance_bound(const FrameData& frame) {
   float irradiance = 0;
-  for (int r = 0; r < frame.light_run_count; ++r) {
-    const LightRun& run = frame.light_runs[r];
+  for (int r = 0; r < frame.lights.run_count; ++r) {
+    const LightRun& run = frame.lights.runs[r];
     float lamp = 0;  // sum over its points
     for (std::uint32_t i = run.begin; i < run.end; ++i) {
-      const LightPoint& light = frame.lights[i];
+      const LightPoint& light = frame.lights.points[i];
       Effect kind = light.material != kNone                                       ? Effect::area_light
                     : run.sample == find_light_sampler(Effect::directional_light) ? Effect::directional_light
                                                                                   : Effect::point_light;
@@ -207,7 +209,7 @@ RadianceBounds radiance_bounds(const FrameData& frame) {
     kind.own = std::max(kind.own, own), kind.passed = std::max(kind.passed, m.passed);
     if (passes_on && m.passed < 1) fixed = std::max(fixed, own / (1 - m.passed));
   }
-  float bound = shows_environment ? background : max_component(frame.beyond_depth);
+  float bound = shows_environment ? background : max_component(frame.cut_off.beyond_depth);
   RadianceBounds bounds;
   for (std::uint32_t i = 0; i <= kRayDepthMax; ++i) {
     auto passed_on = [&](const MaterialBound& kind) { return kind.own + (kind.passed > 0 ? kind.passed * bound : 0); };

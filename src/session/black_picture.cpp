@@ -29,12 +29,12 @@ struct Findings {
 
 // Finds the first opaque surface behind a pixel's centre.
 bool find_surface(const FrameData& frame, std::uint32_t column, std::uint32_t row, Surface* s) {
-  Ray ray = camera_ray(frame.camera, static_cast<float>(column) + 0.5f, static_cast<float>(row) + 0.5f);
+  Ray ray = camera_ray(frame.view.camera, static_cast<float>(column) + 0.5f, static_cast<float>(row) + 0.5f);
   for (std::uint32_t layer = 0; layer < kTransparentLayerMax; ++layer) {
     Hit hit;
-    frame.accel_info->closest(frame.accel, ray, visible_filter(frame), &hit, nullptr);
+    frame.geometry.accel_info->closest(frame.geometry.accel, ray, visible_filter(frame), &hit, nullptr);
     if (hit.triangle == kNoTriangle) return false;
-    frame.surface(frame, ray, hit, s);
+    frame.kernels.surface(frame, ray, hit, s);
     const Material& m = *s->material;
     if (!culls(m, s->front, frame.mask) && !transmits(m, frame.mask) && !blends(m, frame.mask)) return true;
     ray.origin = safe_origin(*s, -1);
@@ -43,15 +43,15 @@ bool find_surface(const FrameData& frame, std::uint32_t column, std::uint32_t ro
 }
 
 bool has_light_on(const FrameData& frame) {
-  return std::any_of(frame.lights.begin(), frame.lights.end(),
+  return std::any_of(frame.lights.points.begin(), frame.lights.points.end(),
                      [](const LightPoint& light) { return !is_zero(light.intensity); });
 }
 
 bool is_lit_unless_blocked(const FrameData& frame, const Surface& s) {
-  for (int r = 0; r < frame.light_run_count; ++r)
-    for (std::uint32_t i = frame.light_runs[r].begin; i < frame.light_runs[r].end; ++i) {
+  for (int r = 0; r < frame.lights.run_count; ++r)
+    for (std::uint32_t i = frame.lights.runs[r].begin; i < frame.lights.runs[r].end; ++i) {
       LightSample sample;
-      if (lights_up(frame, s, frame.light_runs[r], frame.lights[i], &sample)) return true;
+      if (lights_up(frame, s, frame.lights.runs[r], frame.lights.points[i], &sample)) return true;
     }
   return false;
 }

@@ -28,22 +28,22 @@ bool for_each_place(const Settings& settings, Visit visit) {
 }
 
 bool is_transparent(const FrameData& frame, const Material& m, const Hit& hit) {
-  if (m.alpha_mode == AlphaMode::opaque || !frame.alpha) return false;
+  if (m.alpha_mode == AlphaMode::opaque || !frame.kernels.alpha) return false;
   const float alpha =
-      frame.alpha(*frame.scene, m, hit.triangle, hit.u, hit.v, frame.settings.texture_filter, kNoFootprints);
+      frame.kernels.alpha(*frame.scene, m, hit.triangle, hit.u, hit.v, frame.settings.texture_filter, kNoFootprints);
   return m.alpha_mode == AlphaMode::mask ? alpha < m.alpha_cutoff : !(alpha > 0);
 }
 
 // Finds the first visible surface behind a pixel's centre, otherwise the last invisible one.
 Seen look(const FrameData& frame, std::uint32_t column, std::uint32_t row, std::uint32_t* material) {
-  Ray ray = camera_ray(frame.camera, static_cast<float>(column) + 0.5f, static_cast<float>(row) + 0.5f);
+  Ray ray = camera_ray(frame.view.camera, static_cast<float>(column) + 0.5f, static_cast<float>(row) + 0.5f);
   Seen seen = Seen::nothing;
   for (std::uint32_t layer = 0; layer < kTransparentLayerMax; ++layer) {
     Hit hit;
-    frame.accel_info->closest(frame.accel, ray, nullptr, &hit, nullptr);
+    frame.geometry.accel_info->closest(frame.geometry.accel, ray, nullptr, &hit, nullptr);
     if (hit.triangle == kNoTriangle) return seen;
     Surface s;
-    frame.surface(frame, ray, hit, &s);
+    frame.kernels.surface(frame, ray, hit, &s);
     *material = static_cast<std::uint32_t>(s.material - frame.scene->materials.begin());
     const bool is_culled = culls(*s.material, s.front, frame.mask);
     if (!is_culled && !is_transparent(frame, *s.material, hit)) return Seen::surface;
@@ -61,7 +61,7 @@ struct Extent {
 };
 
 Extent extent_of(const FrameData& frame) {
-  const CameraRays& c = frame.camera;
+  const CameraRays& c = frame.view.camera;
   const Vec3d eye = to_double(c.eye), forward = to_double(c.forward), right = to_double(c.right), up = to_double(c.up);
   const double size[2] = {static_cast<double>(c.width), static_cast<double>(c.height)};
   Extent extent;
@@ -89,8 +89,8 @@ const char* describe_place(const FrameData& frame) {
   if (extent.before == 0)
     return "all of it is behind the camera; turn it with --camera, or leave --camera out to frame the model";
   const bool is_beside = extent.before == extent.all && (extent.high[0] < 0 || extent.high[1] < 0 ||
-                                                         extent.low[0] > static_cast<double>(frame.camera.width) ||
-                                                         extent.low[1] > static_cast<double>(frame.camera.height));
+                                                         extent.low[0] > static_cast<double>(frame.view.camera.width) ||
+                                                         extent.low[1] > static_cast<double>(frame.view.camera.height));
   if (is_beside) return "all of it is beside the picture; aim with --camera, or leave --camera out to frame the model";
   if (extent.high[0] - extent.low[0] < 1 || extent.high[1] - extent.low[1] < 1)
     return "it is smaller than a pixel; bring the camera closer, or use a larger --size";

@@ -37,40 +37,42 @@ Vec3 environment_light(const FrameData& frame, const Ray& ray, const Material& m
 
 template <SurroundingsFunction light>
 void surface(const FrameData& frame, const Ray& ray, const Hit& hit, Surface* s) {
-  frame.plain_surface(frame, ray, hit, s);
+  frame.kernels.plain_surface(frame, ray, hit, s);
   s->glow += light(frame, ray, *s->material, *s);
 }
 
 template <SurroundingsFunction light>
 void first_surface(const FrameData& frame, const Ray& ray, const Hit& hit, Surface* s) {
-  frame.plain_first_surface(frame, ray, hit, s);
+  frame.kernels.plain_first_surface(frame, ray, hit, s);
   s->glow += light(frame, ray, *s->material, *s);
 }
 
 template <SurroundingsFunction light, SurroundingsFunction first_light>
 void put_in_front(FrameData* frame) {
-  frame->surface = surface<light>, frame->first_surface = first_surface<first_light>;
+  frame->kernels.surface = surface<light>, frame->kernels.first_surface = first_surface<first_light>;
 }
 
 }  // namespace
 
 void find_surroundings(FrameData* frame) {
   CHECK(frame != nullptr && frame->scene != nullptr);
-  frame->surroundings = frame->first_surroundings = has(frame->mask, Effect::ambient_gloss) ? even_light : nullptr;
+  frame->kernels.surroundings = frame->kernels.first_surroundings =
+      has(frame->mask, Effect::ambient_gloss) ? even_light : nullptr;
   if (!has(kAllEffects, Effect::environment) ||
       !environment_lights(*frame->scene, frame->mask, frame->settings.indirect))
     return;
-  frame->surroundings = frame->first_surroundings = environment_light<true>;
-  if (has(frame->mask, Effect::environment_shadow)) frame->first_surroundings = environment_light<false>;
+  frame->kernels.surroundings = frame->kernels.first_surroundings = environment_light<true>;
+  if (has(frame->mask, Effect::environment_shadow)) frame->kernels.first_surroundings = environment_light<false>;
 }
 
 void add_surroundings(FrameData* frame) {
-  CHECK(frame != nullptr && frame->surface != nullptr && frame->first_surface != nullptr);
-  CHECK(frame->surroundings != nullptr);
-  frame->plain_surface = frame->surface, frame->plain_first_surface = frame->first_surface;
-  if (frame->surroundings == even_light)
+  CHECK(frame != nullptr && frame->kernels.surface != nullptr && frame->kernels.first_surface != nullptr);
+  CHECK(frame->kernels.surroundings != nullptr);
+  frame->kernels.plain_surface = frame->kernels.surface,
+  frame->kernels.plain_first_surface = frame->kernels.first_surface;
+  if (frame->kernels.surroundings == even_light)
     put_in_front<even_light, even_light>(frame);
-  else if (frame->first_surroundings == environment_light<true>)
+  else if (frame->kernels.first_surroundings == environment_light<true>)
     put_in_front<environment_light<true>, environment_light<true>>(frame);
   else
     put_in_front<environment_light<true>, environment_light<false>>(frame);

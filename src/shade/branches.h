@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "shade/frame_data.h"
+#include "shade/tracer.h"
 
 namespace pocketray {
 
@@ -28,10 +29,10 @@ inline void begin_branching(Tracer* tracer) {
   const FrameData& frame = *tracer->frame;
   Branching& b = tracer->branching;
   b.allowed = tracer->budget;
-  b.certain = -frame.dark_radiance;
-  b.share = frame.left_out_slope > 0 ? skip_share(frame.settings.ray_depth) : 1;
+  b.certain = -frame.cut_off.dark_radiance;
+  b.share = frame.cut_off.left_out_slope > 0 ? skip_share(frame.settings.ray_depth) : 1;
   b.ended = 0;
-  b.slope = b.allowed > 0 ? frame.left_out_slope : 0;
+  b.slope = b.allowed > 0 ? frame.cut_off.left_out_slope : 0;
   tracer->skip_max = b.share * b.allowed;
 }
 

@@ -1,7 +1,9 @@
 // Camera rays. They go through pixel centres; row 0 on top; pixels are square.
 #pragma once
+#include "accel/ray.h"
 #include "base/status.h"
-#include "shade/frame_data.h"
+#include "scene/scene.h"
+#include "shade/view.h"
 
 namespace pocketray {
 

@@ -78,7 +78,7 @@ bool has_smooth_light(const FrameData& frame, const Surface& s) {
   if (!is_zero(m.mirror) || !is_zero(m.transmission) || m.alpha_mode != AlphaMode::opaque) return false;
   if (has_grain_texture(*frame.scene, m)) return false;
   if (has(frame.mask, Effect::clear_coat) && s.coat.mirror > 0) return false;
-  return !culls(m, s.front, frame.mask) && frame.eye_media.depth == 0;
+  return !culls(m, s.front, frame.mask) && frame.view.eye_media.depth == 0;
 }
 
 bool is_flat(const FrameData& frame, const PixelCell& cell, float contrast) {

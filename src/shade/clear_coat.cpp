@@ -11,7 +11,7 @@ namespace {
 
 Vec3 coat_normal(const FrameData& frame, const ClearCoat& coat, const Ray& ray, const Vec3& normal, Surface* s) {
   if (coat.normal.texture == kNone || !has(frame.mask, Effect::normal_map)) return normal;
-  const Vec3 own = s->normal, texel = frame.numbers(frame, coat.normal, *s);
+  const Vec3 own = s->normal, texel = frame.kernels.numbers(frame, coat.normal, *s);
   s->normal = normal;
   const Vec3 mapped = mapped_normal(frame, coat.normal_scale, texel, ray, *s);
   s->normal = own;
@@ -27,10 +27,11 @@ void find_coat(const FrameData& frame, const Ray& ray, const Vec3& normal, Surfa
   if (!coat) return;
   effect_entered<Effect::clear_coat>();
   float strength = coat->strength, roughness = coat->roughness;
-  if (coat->strength_texture.texture != kNone) strength *= frame.numbers(frame, coat->strength_texture, *s).x / 255;
+  if (coat->strength_texture.texture != kNone)
+    strength *= frame.kernels.numbers(frame, coat->strength_texture, *s).x / 255;
   if (!(strength > 0)) return;
   if (coat->roughness_texture.texture != kNone) {
-    roughness *= frame.numbers(frame, coat->roughness_texture, *s).y / 255;
+    roughness *= frame.kernels.numbers(frame, coat->roughness_texture, *s).y / 255;
     if (roughness < coat->roughness_low) roughness = coat->roughness_low;
   }
   s->coat.normal = coat_normal(frame, *coat, ray, normal, s);
@@ -47,7 +48,7 @@ void add_coat(const FrameData& frame, const Ray& ray, float open, Surface* s) {
   const SurfaceCoat& coat = s->coat;
   s->glow = s->glow * coat.passes;
   s->diffuse = s->diffuse * coat.passes;
-  if (!frame.surroundings || !(coat.lobe > 0)) return;
+  if (!frame.kernels.surroundings || !(coat.lobe > 0)) return;
   const Scene& scene = *frame.scene;
   const Material m = coat_lobe(coat.roughness);
   Vec3 reflected;

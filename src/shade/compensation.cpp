@@ -21,7 +21,7 @@ struct Candidate {
   Vec3 irradiance;
   Ray ray;
   const LightPoint* emitter;  // light whose own flat piece casts no shadow; null: none
-  std::uint16_t index;    // of the light
+  std::uint16_t index;        // of the light
 };
 
 // A candidate sampled in proportion to its contribution, and the sum of all contributions.
@@ -72,25 +72,26 @@ struct CompensationRays {
     if (!(choice.sum > 0)) return {0, 0, 0};
     if (has(frame.mask, Effect::shadow)) {
       const ShadowContext context = {&frame, choice.chosen.emitter};
-      const HitFilter opaque = {frame.accept_opaque, &context, frame.filters_read_point};
-      const bool is_filtered = frame.filter_every_shadow || choice.chosen.emitter;
+      const HitFilter opaque = {frame.filters.accept_opaque, &context, frame.filters.read_point};
+      const bool is_filtered = frame.filters.every_shadow || choice.chosen.emitter;
       ++*rays;
       *light = choice.chosen.index;
-      if (frame.first_rays->occluded(frame.accel, choice.chosen.ray, is_filtered ? &opaque : nullptr, stats))
+      if (frame.geometry.first_rays->occluded(frame.geometry.accel, choice.chosen.ray, is_filtered ? &opaque : nullptr,
+                                              stats))
         return {0, 0, 0};
     }
     return choice.chosen.irradiance * (choice.sum / choice.most * scale);
   }
 
   Vec3 from_lights(const Surface& s) const {
-    const std::uint32_t stride = (frame.lights.count + kLightsOfPlace - 1) / kLightsOfPlace;
+    const std::uint32_t stride = (frame.lights.points.count + kLightsOfPlace - 1) / kLightsOfPlace;
     Choice choice = {spread_number(place, kStepOfLights)};
-    for (int r = 0; r < frame.light_run_count; ++r) {
-      const LightRun& run = frame.light_runs[r];
+    for (int r = 0; r < frame.lights.run_count; ++r) {
+      const LightRun& run = frame.lights.runs[r];
       // The run's first index that is `place` modulo the stride.
       std::uint32_t i = run.begin + (place + stride - run.begin % stride) % stride;
       for (; i < run.end; i += stride) {
-        const LightPoint& light = frame.lights[i];
+        const LightPoint& light = frame.lights.points[i];
         LightSample sample;
         if (!lights_up(frame, s, run, light, &sample) || is_below(s, sample.direction)) continue;
         const Vec3 irradiance = sample.irradiance * dot(s.normal, sample.direction);
@@ -124,11 +125,11 @@ struct CompensationRays {
     const Ray ray = {safe_origin(receiver, 1), direction, std::sqrt(cos_receiver / geometry_max)};
     Hit hit;
     ++*rays;
-    frame.first_rays->closest(frame.accel, ray, visible_filter(frame), &hit, stats);
+    frame.geometry.first_rays->closest(frame.geometry.accel, ray, visible_filter(frame), &hit, stats);
     path->end = ray.origin + direction * (hit.triangle == kNoTriangle ? ray.t_max : hit.t);
     if (hit.triangle == kNoTriangle) return {0, 0, 0};
     Surface s;
-    frame.first_surface(frame, ray, hit, &s);
+    frame.kernels.first_surface(frame, ray, hit, &s);
     const float cosines = cos_receiver * -dot(s.geometric, direction), bounded = geometry_max * hit.t * hit.t;
     if (is_zero(s.diffuse) || !(cosines > bounded)) return {0, 0, 0};
     return s.diffuse * (from_lights(s) + from_virtual_lights(s)) * (1 - bounded / cosines);
@@ -180,7 +181,7 @@ void add_compensation(const FrameData& frame, const InterleavedPoints& points, T
           s, about_normal(s.normal, compensation_direction(place)));
       light[i].lit += light_lacking * (1.0f / kPatternPixels);
     }
-    if (points.pixel) store(path, &frame.compensation_paths[points.pixel[i]]);
+    if (points.pixel) store(path, &frame.kept.compensation_paths[points.pixel[i]]);
   }
 }
 

@@ -12,8 +12,8 @@ struct ContactFilter {
 
 bool meets_front(const ContactFilter& f, std::uint32_t triangle) {
   const Triangle& t = f.frame->scene->triangles[triangle];
-  const Vec3 &a = f.frame->positions[t.vertex(0)], &b = f.frame->positions[t.vertex(1)],
-             &c = f.frame->positions[t.vertex(2)];
+  const Vec3 &a = f.frame->geometry.positions[t.vertex(0)], &b = f.frame->geometry.positions[t.vertex(1)],
+             &c = f.frame->geometry.positions[t.vertex(2)];
   return dot(normalize(cross(b - a, c - a)), f.inward) <= 0;
 }
 
@@ -37,7 +37,7 @@ void gather_contact(const FrameData& frame, const Surface& s, const Hit& hit, co
   HitFilter fresh = {accept_new_face, &context};
   while (contact->count < kMediumDepthMax) {
     Hit other;
-    frame.accel_info->closest(frame.accel, {begin, context.inward, 1}, &fresh, &other, stats);
+    frame.geometry.accel_info->closest(frame.geometry.accel, {begin, context.inward, 1}, &fresh, &other, stats);
     if (other.triangle == kNoTriangle) return;
     contact->face[contact->count++] = {other, frame.scene->triangles[other.triangle].material(),
                                        meets_front(context, other.triangle)};

@@ -7,6 +7,7 @@
 #include "shade/clear_coat.h"
 #include "shade/polygon_light.h"
 #include "shade/shadow.h"
+#include "shade/tracer.h"
 
 namespace pocketray {
 
@@ -53,13 +54,13 @@ inline Vec3 reflected_light(const FrameData& frame, const LitSurface& to, const 
   return light_out;
 }
 
-// Adds the light of frame.lights[i], which belongs to the run.
+// Adds the light of frame.lights.points[i], which belongs to the run.
 template <EffectMask mask>
 [[gnu::always_inline]] inline void add_light_point(Tracer* tracer, const LitSurface& to, const LightRun& run,
                                                    std::uint32_t i, Vec3* sum) {
   const FrameData& frame = *tracer->frame;
   const Surface& s = to.surface;
-  const LightPoint& light = frame.lights[i];
+  const LightPoint& light = frame.lights.points[i];
   LightSample sample;
   const TileSample* kept = nullptr;
   if (to.at_first_hit && is_sampled(*tracer, i, &kept)) {
@@ -94,7 +95,7 @@ template <EffectMask mask>
   float all = 0, highest = 0;
   for (std::uint32_t i = first; i < first + frame.settings.points_per_area_light; ++i) {
     LightSample sample;
-    if (!lights_up(frame, s, run, frame.lights[i], &sample)) continue;
+    if (!lights_up(frame, s, run, frame.lights.points[i], &sample)) continue;
     const float share = max_component(sample.irradiance) * dot(s.normal, sample.direction);
     all += share;
     if (view.highest > 0) highest = std::max(highest, dot(s.normal, sample.to_light) * polygon.scale);
@@ -131,14 +132,14 @@ template <EffectMask mask>
     const bool blocked = tile->blocked[tracer->tile_pixel];
     if (blocked || (!kClear && tile->open[tracer->tile_pixel])) {
       effect_entered<Effect::shadow>();
-      if (!frame.point_groups.groups.count) tracer->rays[static_cast<int>(RayKind::shadow)] += count;
+      if (!frame.lights.point_groups.groups.count) tracer->rays[static_cast<int>(RayKind::shadow)] += count;
       return blocked ? Vec3{0, 0, 0} : Vec3{1, 1, 1};
     }
   }
   auto visibility = [&](std::uint32_t i) { return shadow<mask>(tracer, s, run, i, nullptr, to.at_first_hit); };
   auto share = [&](std::uint32_t i) {
     LightSample sample;
-    return lights_up(frame, s, run, frame.lights[i], &sample)
+    return lights_up(frame, s, run, frame.lights.points[i], &sample)
                ? max_component(sample.irradiance) * dot(s.normal, sample.direction)
                : 0;
   };
@@ -188,7 +189,7 @@ template <EffectMask mask>
   LobePoints p;
   for (std::uint32_t i = first; i < first + count; ++i) {
     LightSample sample;
-    if (!lights_up(frame, s, run, frame.lights[i], &sample)) continue;
+    if (!lights_up(frame, s, run, frame.lights.points[i], &sample)) continue;
     const Vec3& to_light = sample.direction;
     const float arriving = max_component(sample.irradiance), cosine = dot(s.normal, to_light);
     const float share = arriving * cosine;
@@ -244,7 +245,7 @@ template <EffectMask mask>
     all_seen = !kClear && tile->open[tracer->tile_pixel];
     if (blocked || all_seen) {
       effect_entered<Effect::shadow>();
-      if (!frame.point_groups.groups.count) tracer->rays[static_cast<int>(RayKind::shadow)] += count;
+      if (!frame.lights.point_groups.groups.count) tracer->rays[static_cast<int>(RayKind::shadow)] += count;
     }
     if (blocked) return true;
   }
@@ -272,7 +273,7 @@ template <EffectMask mask>
   const std::uint32_t count = frame.settings.points_per_area_light;
   for (std::uint32_t lamp = 0, first = run.begin; first < run.end; ++lamp, first += count) {
     const LightPolygon& polygon = run.polygons[lamp];
-    const LightPoint& point = frame.lights[first];
+    const LightPoint& point = frame.lights.points[first];
     if (polygon.corner_count && is_own(frame, s, point) && is_unlit_by_own(frame, s, point)) continue;
     const TilePolygon* tile = to.at_first_hit ? tile_polygon(*tracer, lamp) : nullptr;
     PolygonView view = {false, false, 0, 0};
@@ -316,8 +317,8 @@ Vec3 direct_light(Tracer* tracer, const Surface& s, const Material& m, const Vec
   Vec3 sum = {0, 0, 0};
   const bool at_first_hit = tracer->first_surface && same_surface(*tracer->first_surface, s);
   const LitSurface to = {s, m, to_viewer, weight, s.diffuse * (1 / kPiF), at_first_hit};
-  for (int r = 0; r < frame.light_run_count; ++r) {
-    const LightRun& run = frame.light_runs[r];
+  for (int r = 0; r < frame.lights.run_count; ++r) {
+    const LightRun& run = frame.lights.runs[r];
     if (run.polygons) {
       const LitSurface copy = to;  // arguments passed by reference must live in memory
       sum = add_area_lights<mask & kDirectEffects>(tracer, copy, run, sum);

@@ -48,12 +48,12 @@ void make_filters(FrameData* frame) {
   CHECK(frame != nullptr && frame->scene != nullptr);
   bool masked = has(frame->mask, Effect::alpha_mask);
   bool clear = has(frame->mask, Effect::refraction) || has(frame->mask, Effect::alpha_blend);
-  frame->visible_filter = {masked ? accept_visible : nullptr, frame, masked};
-  frame->filters_read_point = masked;
-  frame->accept_opaque = masked ? (clear ? accept_opaque<true, true> : accept_opaque<true, false>)
-                                : (clear ? accept_opaque<false, true> : accept_opaque<false, false>);
-  frame->accept_clear = !clear ? nullptr : masked ? accept_clear<true> : accept_clear<false>;
-  frame->filter_every_shadow = masked || clear;
+  frame->filters.visible = {masked ? accept_visible : nullptr, frame, masked};
+  frame->filters.read_point = masked;
+  frame->filters.accept_opaque = masked ? (clear ? accept_opaque<true, true> : accept_opaque<true, false>)
+                                        : (clear ? accept_opaque<false, true> : accept_opaque<false, false>);
+  frame->filters.accept_clear = !clear ? nullptr : masked ? accept_clear<true> : accept_clear<false>;
+  frame->filters.every_shadow = masked || clear;
 }
 
 }  // namespace pocketray

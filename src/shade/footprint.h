@@ -49,9 +49,9 @@ inline Vec2 footprint_axis(const FrameData& frame, float t, const Vec3& directio
   constexpr float kMost = 1e18f;                                                   // products of two are finite
   const float cosine = dot(normal, direction), size = dot(normal, perpendicular);  // twice the triangle's area
   if (uvs.empty() || !(std::fabs(cosine) > 0 && size > 0)) return {0, 0};
-  const float stretch = (frame.cone.width + t * frame.cone.spread) / std::fabs(cosine);
-  const Vec3 along = normalize(direction - normal * cosine), a = frame.positions[triangle.vertex(0)];
-  const Vec3 e = frame.positions[triangle.vertex(1)] - a, f = frame.positions[triangle.vertex(2)] - a;
+  const float stretch = (frame.view.cone.width + t * frame.view.cone.spread) / std::fabs(cosine);
+  const Vec3 along = normalize(direction - normal * cosine), a = frame.geometry.positions[triangle.vertex(0)];
+  const Vec3 e = frame.geometry.positions[triangle.vertex(1)] - a, f = frame.geometry.positions[triangle.vertex(2)] - a;
   const float du = dot(cross(along, f), normal) / size, dv = dot(cross(e, along), normal) / size;
   if (!(stretch < kMost && std::fabs(du) < kMost && std::fabs(dv) < kMost)) return {0, 0};
   const Vec2 p = uvs[triangle.vertex(0)], q = uvs[triangle.vertex(1)], r = uvs[triangle.vertex(2)];

@@ -34,9 +34,10 @@ bool visible_surface(Tracer* tracer, Ray* ray, Hit* hit, Surface* s, float* pass
   const FrameData& frame = *tracer->frame;
   *passed = 0;
   for (std::uint32_t layer = 0; layer < kTransparentLayerMax; ++layer) {
-    if (layer > 0) frame.accel_info->closest(frame.accel, *ray, visible_filter(frame), hit, &tracer->stats);
+    if (layer > 0)
+      frame.geometry.accel_info->closest(frame.geometry.accel, *ray, visible_filter(frame), hit, &tracer->stats);
     if (hit->triangle == kNoTriangle) return false;
-    frame.first_surface(frame, *ray, *hit, s);
+    frame.kernels.first_surface(frame, *ray, *hit, s);
     if (!culls(*s->material, s->front, frame.mask)) return true;
     // A face whose back touches another face may be visible.
     Contact contact;
@@ -47,7 +48,7 @@ bool visible_surface(Tracer* tracer, Ray* ray, Hit* hit, Surface* s, float* pass
       const float t = hit->t;
       *hit = face.hit;
       hit->t = t;
-      frame.first_surface(frame, *ray, *hit, s);
+      frame.kernels.first_surface(frame, *ray, *hit, s);
       return true;
     }
     *passed += hit->t;
@@ -74,7 +75,7 @@ Vec3 pixel_indirect_light(Tracer* tracer, std::uint32_t column, std::uint32_t ro
   Ray ray = pixel_ray(frame, column, row, rook_point(0, frame.settings.samples_per_pixel));
   ++tracer->rays[static_cast<int>(RayKind::primary)];
   Hit hit;
-  frame.first_rays->closest(frame.accel, ray, visible_filter(frame), &hit, &tracer->stats);
+  frame.geometry.first_rays->closest(frame.geometry.accel, ray, visible_filter(frame), &hit, &tracer->stats);
   Surface s;
   float passed;
   const bool shows = visible_surface(tracer, &ray, &hit, &s, &passed) && takes_indirect_light(s);

@@ -111,24 +111,26 @@ void find_first_hits(Tracer* tracer, const SharedTile& tile, const PixelList& pi
     first->ray[i] = pixel_ray(frame, tile.column + pixels.column[begin + i] - kTakenBefore,
                               tile.row + pixels.row[begin + i] - kTakenBefore, offset);
   first->knows_shadows = false;
-  if (!frame.camera.orthographic && !frame.ray_by_ray) {
+  if (!frame.view.camera.orthographic && !frame.geometry.ray_by_ray) {
     RayPacket packet;
-    packet.origin = frame.camera.eye, packet.t_max = __builtin_inff(), packet.count = count;
+    packet.origin = frame.view.camera.eye, packet.t_max = __builtin_inff(), packet.count = count;
     for (std::uint32_t i = 0; i < count; ++i)
       for (int axis = 0; axis < 3; ++axis) packet.direction[axis][i] = first->ray[i].direction[axis];
-    frame.first_rays->closest_packet(frame.accel, packet, visible_filter(frame), first->hit, &tracer->stats);
-    first->knows_shadows = with_shadows && frame.find_shadows != nullptr;
-    if (first->knows_shadows) return frame.find_shadows(tracer, packet, first->hit, &first->shadows);
+    frame.geometry.first_rays->closest_packet(frame.geometry.accel, packet, visible_filter(frame), first->hit,
+                                              &tracer->stats);
+    first->knows_shadows = with_shadows && frame.kernels.find_shadows != nullptr;
+    if (first->knows_shadows) return frame.kernels.find_shadows(tracer, packet, first->hit, &first->shadows);
   } else {
     for (std::uint32_t i = 0; i < count; ++i)
-      frame.first_rays->closest(frame.accel, first->ray[i], visible_filter(frame), &first->hit[i], &tracer->stats);
+      frame.geometry.first_rays->closest(frame.geometry.accel, first->ray[i], visible_filter(frame), &first->hit[i],
+                                         &tracer->stats);
   }
   for (std::uint32_t i = 0; i < count; ++i)
     if (first->hit[i].triangle != kNoTriangle)
-      frame.first_surface(frame, first->ray[i], first->hit[i], &first->shadows.surface[i]);
+      frame.kernels.first_surface(frame, first->ray[i], first->hit[i], &first->shadows.surface[i]);
 }
 
-// Lists the indices in FrameData::compensation_paths of one sample of some of the region's pixels.
+// Lists the indices in KeptRays::compensation_paths of one sample of some of the region's pixels.
 void list_paths(const Settings& settings, const SharedTile& tile, std::uint32_t sample, std::uint32_t count,
                 const std::uint8_t* in_region, std::uint32_t* pixel) {
   for (std::uint32_t i = 0; i < count; ++i) {
@@ -160,8 +162,8 @@ void gather(Tracer* tracer, const SharedTile& tile, std::uint32_t sample, const 
   }
   if (found == 0) return;
   std::uint32_t path[kPacketMax];
-  if (frame.compensation_paths) list_paths(frame.settings, tile, sample, found, in_region, path);
-  const InterleavedPoints points = {found, surface, place, frame.compensation_paths ? path : nullptr};
+  if (frame.kept.compensation_paths) list_paths(frame.settings, tile, sample, found, in_region, path);
+  const InterleavedPoints points = {found, surface, place, frame.kept.compensation_paths ? path : nullptr};
   for (int source = 0; source < kInterleavedSourceCount; ++source) {
     if (!has(frame.mask, kInterleavedSources[source]->effect)) continue;
     kInterleavedSources[source]->gather(frame, points, &tracer->stats, &tracer->rays[static_cast<int>(RayKind::shadow)],
@@ -297,7 +299,7 @@ void trace_sample(Tracer* tracer, const SharedTile& tile, std::uint32_t sample, 
     tracer->tile_pixel = i;
     tracer->first_surface = hit ? s : nullptr;
     observe_pixel(tracer, column, row);
-    if (frame.first_hits) keep_first_hit(tracer, sample, column, row, first.hit[i]);
+    if (frame.kept.first_hits) keep_first_hit(tracer, sample, column, row, first.hit[i]);
     Vec3* pixel = &image.at(column, row);
     Vec3 sum = sample_radiance(tracer, first.ray[i], first.hit[i], tracer->first_surface);
     if (sample > 0) sum = *pixel + sum;

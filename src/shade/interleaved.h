@@ -26,7 +26,7 @@ struct InterleavedPoints {
   std::uint32_t count;
   const Surface* const* surface;
   const std::uint8_t* place;
-  const std::uint32_t* pixel = nullptr;  // index in FrameData::compensation_paths; null: none is kept
+  const std::uint32_t* pixel = nullptr;  // index in KeptRays::compensation_paths; null: none is kept
 };
 // Light from a pixel's sixteenth of the sources, or a sum over pixels: with (lit) and without (open) shadows.
 struct InterleavedLight {

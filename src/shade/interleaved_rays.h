@@ -157,8 +157,8 @@ void gather_interleaved(const FrameData& frame, const InterleavedPoints& points,
                         bool casts_shadows, TraceStats* stats, std::uint64_t* rays, InterleavedLight* light) {
   CHECK_LE(points.count, kPacketMax);
   ShadowContext context = {&frame, nullptr};
-  const HitFilter opaque = {frame.accept_opaque, &context, frame.filters_read_point};
-  const HitFilter* filter = frame.filter_every_shadow ? &opaque : nullptr;
+  const HitFilter opaque = {frame.filters.accept_opaque, &context, frame.filters.read_point};
+  const HitFilter* filter = frame.filters.every_shadow ? &opaque : nullptr;
   PixelLights found;
   for (std::uint32_t i = 0; i < points.count; ++i) {
     find_sources(source, *points.surface[i], source.of_place(points.place[i]), &found);
@@ -167,7 +167,7 @@ void gather_interleaved(const FrameData& frame, const InterleavedPoints& points,
     if (!casts_shadows) continue;
     light[i].lit = arriving_light(source, *points.surface[i], found, [&](const Ray& ray) {
       ++*rays;
-      return frame.first_rays->occluded(frame.accel, ray, filter, stats);
+      return frame.geometry.first_rays->occluded(frame.geometry.accel, ray, filter, stats);
     });
   }
 }

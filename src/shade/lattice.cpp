@@ -106,7 +106,7 @@ void trace_pixels(const OpenWindow& window, Tile* tile) {
   Tracer* tracer = window.tracer;
   const FrameData& frame = *tracer->frame;
   CHECK_LE(tile->count, kPacketMax);
-  if (tile->count >= kPacketRaysMin && !frame.ray_by_ray && !frame.camera.orthographic) {
+  if (tile->count >= kPacketRaysMin && !frame.geometry.ray_by_ray && !frame.view.camera.orthographic) {
     trace_tile(tracer, *tile, window.rows);
   } else {
     for (std::uint32_t i = 0; i < tile->count; ++i)
@@ -150,7 +150,7 @@ void trace_wanted(const OpenWindow& window) {
 
 // Traces with the frame's strip function, a row of tiles at a time.
 void trace_wanted_strips(const OpenWindow& window) {
-  CHECK(window.tracer->frame->trace_lattice_strip != nullptr);
+  CHECK(window.tracer->frame->kernels.trace_lattice_strip != nullptr);
   const std::uint32_t end = window_end(window), left = window.column_begin / kTileSide * kTileSide;
   for (std::uint32_t row = window_begin(window), next; row < end; row = next) {
     next = std::min((row / kTileSide + 1) * kTileSide, end);
@@ -163,7 +163,7 @@ void trace_wanted_strips(const OpenWindow& window) {
       strip.mask[(x - left) / kTileSide] |= std::uint64_t(1) << morton_place(x % kTileSide, y % kTileSide);
       any = true;
     });
-    if (any) window.tracer->frame->trace_lattice_strip(window.tracer, strip, window.rows);
+    if (any) window.tracer->frame->kernels.trace_lattice_strip(window.tracer, strip, window.rows);
   }
 }
 
@@ -266,7 +266,7 @@ void trace_lattice(Tracer* tracer, const TileStrip& strip, const PixelRows& imag
                      [&](std::uint32_t column, std::uint32_t row) { want(&window, column, row); });
     }
     if (window.column_begin < window.column_end)
-      tracer->frame->trace_lattice_strip ? trace_wanted_strips(window) : trace_wanted(window);
+      tracer->frame->kernels.trace_lattice_strip ? trace_wanted_strips(window) : trace_wanted(window);
     for (std::uint32_t c = 0; c < tiles.tile_count; ++c)
       reconstruct(window, tiles.column + c * kTileSide, tiles.row + r * kTileSide, tiles.mask[r][c], image);
   }

@@ -79,7 +79,7 @@ bool sample_area_light(const LightPoint& light, const Vec3& point, LightSample* 
 bool is_in_plane_of(const FrameData& frame, const LightPoint& light, std::uint32_t triangle) {
   CHECK(light.material != kNone);
   for (std::uint32_t v : frame.scene->triangles[triangle].vertices())
-    if (!is_in_plane(light, frame.positions[v])) return false;
+    if (!is_in_plane(light, frame.geometry.positions[v])) return false;
   return true;
 }
 

@@ -29,7 +29,7 @@ struct LookUp {
 // `uv` are the first texture coordinates.
 template <EffectMask mask>
 Vec3 numbers_of(const FrameData& frame, const TextureUse& use, const Surface& s, Vec2 uv) {
-  if constexpr (has(mask, Effect::second_uv)) return frame.numbers(frame, use, s);
+  if constexpr (has(mask, Effect::second_uv)) return frame.kernels.numbers(frame, use, s);
   return numbers_at<has(mask, Effect::mip_map)>(*frame.scene, use, uv, frame.settings.texture_filter, s.footprint);
 }
 
@@ -53,10 +53,10 @@ void apply_metallic_roughness(const FrameData& frame, const MaterialMaps& maps, 
 
 void apply_specular(const FrameData& frame, const MaterialMaps& maps, const Surface& s, MetallicRoughness* model) {
   if (maps.specular.texture != kNone) {
-    const float share = frame.color(frame, maps.specular, s).alpha;
+    const float share = frame.kernels.color(frame, maps.specular, s).alpha;
     model->dielectric = model->dielectric * share, model->grazing *= share;
   }
-  if (maps.specular_color.texture != kNone) model->dielectric *= frame.color(frame, maps.specular_color, s).rgb;
+  if (maps.specular_color.texture != kNone) model->dielectric *= frame.kernels.color(frame, maps.specular_color, s).rgb;
 }
 
 // Fraction of ambient light left by the map.
@@ -77,7 +77,7 @@ bool takes_part(const FrameData& frame, Effect effect) {
 
 template <EffectMask mask, bool first>
 void mapped_surface(const FrameData& frame, const Ray& ray, const Hit& hit, Surface* s) {
-  frame.plain_surface(frame, ray, hit, s);
+  frame.kernels.plain_surface(frame, ray, hit, s);
   const Scene& scene = *frame.scene;
   float open = 1;
   LookUp last;
@@ -103,14 +103,14 @@ void mapped_surface(const FrameData& frame, const Ray& ray, const Hit& hit, Surf
     if (scene.grains.count && (!has(mask, Effect::second_uv) || has(frame.mask, Effect::anisotropy)))
       s->grain = surface_grain(frame, scene.grains[s->material - scene.materials.data], *s);
   }
-  frame.glow(frame, s);
+  frame.kernels.glow(frame, s);
   if constexpr (has(mask, Effect::occlusion)) {
     if (has(frame.mask, Effect::ambient) && takes_part<mask>(frame, Effect::occlusion))
       s->glow += AmbientIndirect::radiance({scene, nullptr, s->point, s->normal, s->diffuse}) * open;
   }
-  if (frame.surroundings) {
+  if (frame.kernels.surroundings) {
     Material mapped;
-    const SurroundingsFunction surroundings = first ? frame.first_surroundings : frame.surroundings;
+    const SurroundingsFunction surroundings = first ? frame.kernels.first_surroundings : frame.kernels.surroundings;
     s->glow += surroundings(frame, ray, lobes_at(frame, *s, &mapped), *s) * open;
   }
   if constexpr (has(mask, Effect::clear_coat)) {
@@ -157,10 +157,10 @@ void add_material_maps(FrameData* frame) {
   CHECK((frame->mask & kMapEffects) != 0);
   EffectMask glow = frame->mask;
   if (has(glow, Effect::occlusion)) glow &= ~bit(Effect::ambient);  // mapped_surface() adds it
-  frame->plain_surface = find_surface_function(frame->mask & ~bit(Effect::emission) & ~kIndirectEffects);
-  frame->glow = find_glow_function(glow);
-  frame->surface = find_mapped_surface<false>(frame->mask);
-  frame->first_surface = find_mapped_surface<true>(frame->mask);
+  frame->kernels.plain_surface = find_surface_function(frame->mask & ~bit(Effect::emission) & ~kIndirectEffects);
+  frame->kernels.glow = find_glow_function(glow);
+  frame->kernels.surface = find_mapped_surface<false>(frame->mask);
+  frame->kernels.first_surface = find_mapped_surface<true>(frame->mask);
 }
 
 }  // namespace pocketray

@@ -9,7 +9,7 @@ namespace pocketray {
 constexpr EffectMask kMapEffects = bit(Effect::metallic_roughness) | bit(Effect::normal_map) | bit(Effect::occlusion) |
                                    bit(Effect::anisotropy) | bit(Effect::second_uv) | bit(Effect::clear_coat);
 
-// Applies the maps after the frame's surface functions, and adds the light of FrameData::surroundings.
+// Applies the maps after the frame's surface functions, and adds the light of Kernels::surroundings.
 void add_material_maps(FrameData* frame);
 
 // Returns the material's lobes at the surface: its own, or those modified by the map and stored in `mapped`.

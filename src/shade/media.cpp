@@ -21,7 +21,7 @@ void cross_contact(const Scene& scene, const Contact& contact, MediumStack* stac
 }
 
 MediumStack media_at(const FrameData& frame, const Vec3& eye, const Vec3& direction) {
-  CHECK(frame.scene != nullptr && frame.accel_info != nullptr && frame.surface != nullptr);
+  CHECK(frame.scene != nullptr && frame.geometry.accel_info != nullptr && frame.kernels.surface != nullptr);
   // Walking outward, an exit without its entry belongs to a body that contains the eye; the first such is the
   // innermost.
   std::uint32_t exits[kMediumDepthMax];
@@ -31,10 +31,10 @@ MediumStack media_at(const FrameData& frame, const Vec3& eye, const Vec3& direct
   TraceStats stats;
   for (std::uint32_t layer = 0; layer < kTransparentLayerMax; ++layer) {
     Hit hit;
-    frame.accel_info->closest(frame.accel, ray, nullptr, &hit, &stats);
+    frame.geometry.accel_info->closest(frame.geometry.accel, ray, nullptr, &hit, &stats);
     if (hit.triangle == kNoTriangle) break;
     Surface s;
-    frame.surface(frame, ray, hit, &s);
+    frame.kernels.surface(frame, ray, hit, &s);
     Contact contact;
     gather_contact(frame, s, hit, nullptr, &contact, &stats);
     for (bool entering : {false, true})

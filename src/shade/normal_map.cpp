@@ -45,7 +45,8 @@ bool tangent_frame(const FrameData& frame, const Surface& s, const Vec3& n, Vec3
     if (!(area < 0 || area > 0)) return false;
     handedness = area < 0 ? 1 : -1;
     if (!at_vertices) {
-      const Vec3 e = frame.positions[j] - frame.positions[i], f = frame.positions[k] - frame.positions[i];
+      const Vec3 e = frame.geometry.positions[j] - frame.geometry.positions[i],
+                 f = frame.geometry.positions[k] - frame.geometry.positions[i];
       along = (e * fv - f * ev) * (area < 0 ? -1.0f : 1.0f);
     }
   }
@@ -76,7 +77,7 @@ Vec3 surface_grain(const FrameData& frame, const Grain& grain, const Surface& s)
   Vec3 tangent, bitangent;
   if ((d.x == 0 && d.y == 0) || !tangent_frame(frame, s, s.front ? s.normal : -s.normal, &tangent, &bitangent))
     return {0, 0, 0};
-  if (grain.texture.texture != kNone) d = turned_grain(d, frame.numbers(frame, grain.texture, s));
+  if (grain.texture.texture != kNone) d = turned_grain(d, frame.kernels.numbers(frame, grain.texture, s));
   return tangent * d.x + bitangent * d.y;
 }
 

@@ -21,14 +21,14 @@ class PointTester {
 
   bool is_probe(std::uint32_t point, Ray* ray) const {
     LightSample sample;
-    if (!pocketray::is_probe(frame_, surface_, run(), frame_.lights[first_ + point], &sample)) return false;
+    if (!pocketray::is_probe(frame_, surface_, run(), frame_.lights.points[first_ + point], &sample)) return false;
     *ray = {safe_origin(surface_, 1), sample.to_light, sample.t_max};
     return true;
   }
   // Tests a point that lights up the surface from below its triangle's plane.
   bool test_from_below(std::uint32_t point) {
     LightSample sample;
-    CHECK(lights_up(frame_, surface_, run(), frame_.lights[first_ + point], &sample));
+    CHECK(lights_up(frame_, surface_, run(), frame_.lights.points[first_ + point], &sample));
     return trace(point, {curved_origin(frame_, surface_), sample.to_light, sample.t_max});
   }
 
@@ -66,14 +66,14 @@ class PointTester {
   static std::uint64_t bit(std::uint32_t point) { return std::uint64_t(1) << point % 64; }
   static bool has(const PointBits& bits, std::uint32_t point) { return (bits[point / 64] & bit(point)) != 0; }
   static void add(std::uint32_t point, PointBits* bits) { (*bits)[point / 64] |= bit(point); }
-  const LightRun& run() const { return frame_.light_runs[frame_.light_run_count - 1]; }
+  const LightRun& run() const { return frame_.lights.runs[frame_.lights.run_count - 1]; }
 
   bool trace(std::uint32_t point, const Ray& ray) {
     ++tracer_->rays[static_cast<int>(RayKind::shadow)];
-    const ShadowContext context = {&frame_, &frame_.lights[first_ + point]};
-    const HitFilter opaque = {frame_.accept_opaque, &context, frame_.filters_read_point};
-    const AccelTraversal& rays = at_first_hit_ ? *frame_.first_rays : *frame_.accel_info;
-    return rays.occluded(frame_.accel, ray, &opaque, &tracer_->stats);
+    const ShadowContext context = {&frame_, &frame_.lights.points[first_ + point]};
+    const HitFilter opaque = {frame_.filters.accept_opaque, &context, frame_.filters.read_point};
+    const AccelTraversal& rays = at_first_hit_ ? *frame_.geometry.first_rays : *frame_.geometry.accel_info;
+    return rays.occluded(frame_.geometry.accel, ray, &opaque, &tracer_->stats);
   }
 
   Tracer* tracer_;
@@ -87,7 +87,7 @@ class PointTester {
 
 bool is_point_blocked(Tracer* tracer, const Surface& s, std::uint32_t light, bool at_first_hit) {
   const FrameData& frame = *tracer->frame;
-  const PointGroups& groups = frame.point_groups;
+  const PointGroups& groups = frame.lights.point_groups;
   CHECK_GE(light, groups.first_point);
   if (at_first_hit && tracer->tile_shadows && light < kTileLightMax) {
     const TileShadows& tile = *tracer->tile_shadows;

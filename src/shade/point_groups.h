@@ -25,7 +25,7 @@ inline bool is_probe(const FrameData& frame, const Surface& s, const LightRun& r
 }
 
 // Returns whether something opaque blocks a point of an area light that lights up the surface. `light` is its index in
-// FrameData::lights. Counts the rays traced.
+// Lights::points. Counts the rays traced.
 bool is_point_blocked(Tracer* tracer, const Surface& s, std::uint32_t light, bool at_first_hit);
 
 }  // namespace pocketray

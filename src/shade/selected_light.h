@@ -2,6 +2,7 @@
 #pragma once
 #include "shade/direct.h"
 #include "shade/source_selection.h"
+#include "shade/tracer.h"
 
 namespace pocketray {
 
@@ -27,7 +28,7 @@ Vec3 selected_light(Tracer* tracer, const Surface& s, const Material& m, const V
       seen += entry.radiance;
       continue;
     }
-    const LightRun& run = frame.light_runs[entry.run];
+    const LightRun& run = frame.lights.runs[entry.run];
     seen += entry.radiance * shadow<mask>(tracer, s, run, entry.light, nullptr, at_first_hit);
   }
   const float all = max_component(tested);

@@ -50,8 +50,7 @@ CellCorner* kept_corner(const CellTile& tile, std::uint32_t i, std::uint32_t k) 
 const CellCorner& corner_at(CellTile* tile, std::uint32_t i, std::uint32_t k) {
   CellCorner& corner = tile->corner[i][k];
   if (corner.known) return corner;
-  if (i > 0 && corner_column(*tile, i) == corner_column(*tile, i - 1))
-    return corner = corner_at(tile, i - 1, k);
+  if (i > 0 && corner_column(*tile, i) == corner_column(*tile, i - 1)) return corner = corner_at(tile, i - 1, k);
   if (k > 0 && corner_row(*tile, k) == corner_row(*tile, k - 1)) return corner = corner_at(tile, i, k - 1);
   CellCorner* kept = kept_corner(*tile, i, k);
   if (kept && kept->known) return corner = *kept;
@@ -99,11 +98,10 @@ struct Doubtful {
 bool take_light(Tracer* tracer, const Doubtful& pixels, std::uint32_t i, const Ray& ray, const Hit& hit, Surface* s,
                 Vec3* radiance) {
   if (hit.triangle == kNoTriangle) return false;
-  tracer->frame->surface(*tracer->frame, ray, hit, s);
+  tracer->frame->kernels.surface(*tracer->frame, ray, hit, s);
   const std::uint32_t m = pixels.place[i], column = morton_column(m) % kCellSide, row = morton_row(m) % kCellSide;
   const PixelCell& cell = pixels.cell[m / (kCellSide * kCellSide)];
-  if (!predict(*tracer->frame, cell, tracer->frame->selection.contrast, *s, column, row, radiance))
-    return false;
+  if (!predict(*tracer->frame, cell, tracer->frame->selection.contrast, *s, column, row, radiance)) return false;
   ++tracer->rays[static_cast<int>(RayKind::primary)];
   return true;
 }
@@ -112,13 +110,13 @@ void trace_together(Tracer* tracer, const Doubtful& pixels, const PixelRows& ima
   const FrameData& frame = *tracer->frame;
   const Tile& tile = pixels.tile;
   RayPacket packet, rays;
-  packet.origin = frame.camera.eye, packet.t_max = __builtin_inff(), packet.count = tile.count;
+  packet.origin = frame.view.camera.eye, packet.t_max = __builtin_inff(), packet.count = tile.count;
   for (std::uint32_t i = 0; i < tile.count; ++i) {
     const Vec3 direction = pixel_ray(frame, tile.column[i], tile.row[i], {0.5f, 0.5f}).direction;
     for (int axis = 0; axis < 3; ++axis) packet.direction[axis][i] = direction[axis];
   }
   Hit hits[kPacketMax];
-  frame.first_rays->closest_packet(frame.accel, packet, visible_filter(frame), hits, &tracer->stats);
+  frame.geometry.first_rays->closest_packet(frame.geometry.accel, packet, visible_filter(frame), hits, &tracer->stats);
   Tile shaded;
   for (std::uint32_t i = 0; i < tile.count; ++i) {
     Surface s;
@@ -139,7 +137,7 @@ void trace_one(Tracer* tracer, const Doubtful& pixels, std::uint32_t i, const Pi
   const FrameData& frame = *tracer->frame;
   const Ray ray = pixel_ray(frame, pixels.tile.column[i], pixels.tile.row[i], {0.5f, 0.5f});
   Hit hit;
-  frame.first_rays->closest(frame.accel, ray, visible_filter(frame), &hit, &tracer->stats);
+  frame.geometry.first_rays->closest(frame.geometry.accel, ray, visible_filter(frame), &hit, &tracer->stats);
   Surface s;
   Vec3* pixel = &image.at(pixels.tile.column[i], pixels.tile.row[i]);
   if (take_light(tracer, pixels, i, ray, hit, &s, pixel)) return;
@@ -151,7 +149,7 @@ void trace_one(Tracer* tracer, const Doubtful& pixels, std::uint32_t i, const Pi
 void trace_doubtful(Tracer* tracer, const Doubtful& pixels, const PixelRows& image) {
   const FrameData& frame = *tracer->frame;
   const Tile& tile = pixels.tile;
-  const bool has_packets = !frame.ray_by_ray && !frame.camera.orthographic;
+  const bool has_packets = !frame.geometry.ray_by_ray && !frame.view.camera.orthographic;
   if (frame.settings.samples_per_pixel == 1) {
     if (has_packets && tile.count >= kCameraRaysMin) return trace_together(tracer, pixels, image);
     for (std::uint32_t i = 0; i < tile.count; ++i) trace_one(tracer, pixels, i, image);
@@ -173,8 +171,7 @@ void trace_cells(CellTile* tile, std::uint64_t wanted, const PixelRows& image) {
     const std::uint64_t corner_mask = std::uint64_t(1) << kCellPixels * c;
     const std::uint32_t i = c % 2, k = c / 2;
     std::uint64_t mask = wanted & cell_mask;
-    if (mask & corner_mask)
-      image.at(corner_column(*tile, i), corner_row(*tile, k)) = corner_at(tile, i, k).radiance;
+    if (mask & corner_mask) image.at(corner_column(*tile, i), corner_row(*tile, k)) = corner_at(tile, i, k).radiance;
     mask &= ~corner_mask;
     if (!mask) continue;
     const PixelCell cell = doubtful.cell[c] = cell_at(tile, i, k);

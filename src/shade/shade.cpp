@@ -59,7 +59,7 @@ constexpr bool kBranches = has(mask, Effect::refraction) || has(mask, Effect::cl
 inline void end_ray(Tracer* tracer, float weight, const Vec3& seen) {
   ++tracer->rays_ended;
   tracer->ended_weight_max = std::max(tracer->ended_weight_max, weight);
-  const float bound = tracer->frame->radiance_bounds.after[kRayDepthMax];
+  const float bound = tracer->frame->cut_off.radiance_bounds.after[kRayDepthMax];
   const float least = std::min(seen.x, std::min(seen.y, seen.z));
   if (weight > 0) tracer->branching.ended += weight * std::max(max_component(seen), bound - least);
 }
@@ -85,7 +85,8 @@ Vec3 spawn(Tracer* tracer, RayKind kind, const Surface& s, const Vec3& direction
            const Vec3& weight) {
   const FrameData& frame = *tracer->frame;
   if (path.depth >= frame.settings.ray_depth) {
-    const Vec3 seen = has_environment<mask>(frame) ? radiance_behind<mask>(frame, direction) : frame.beyond_depth;
+    const Vec3 seen =
+        has_environment<mask>(frame) ? radiance_behind<mask>(frame, direction) : frame.cut_off.beyond_depth;
     end_ray(tracer, max_component(path.weight * weight), seen);
     return weight * seen;
   }
@@ -94,7 +95,7 @@ Vec3 spawn(Tracer* tracer, RayKind kind, const Surface& s, const Vec3& direction
   next.depth = path.depth + 1;
   float most = max_component(next.weight);
   const std::uint32_t further = frame.settings.ray_depth - next.depth;
-  if (!(most > 0) || leave_out(tracer, most * frame.radiance_bounds.after[further])) return {0, 0, 0};
+  if (!(most > 0) || leave_out(tracer, most * frame.cut_off.radiance_bounds.after[further])) return {0, 0, 0};
   ++tracer->rays[static_cast<int>(kind)];
   return weight * radiance<mask>(tracer, {safe_origin(s, side), direction, __builtin_inff()}, next);
 }
@@ -235,7 +236,7 @@ Vec3 shade(Tracer* tracer, const Ray& ray, const Surface& s, const Contact* cont
 template <EffectMask mask>
 void add_later_light(Tracer* tracer, const Path<mask>& path, Surface* s) {
   if constexpr (has(kAllEffects, Effect::instant_radiosity) && (mask & kGoesOn) != 0)
-    if (tracer->frame->add_later_light) tracer->frame->add_later_light(tracer, path.weight, s);
+    if (tracer->frame->kernels.add_later_light) tracer->frame->kernels.add_later_light(tracer, path.weight, s);
 }
 
 // Adds the blending surfaces of a contact, one over the other. Returns false if nothing behind them matters.
@@ -251,7 +252,7 @@ bool blend_layers(Tracer* tracer, const Ray& ray, const Contact& contact, Vec3* 
     if (!blends(m, plan) || culls(m, face.front, plan)) continue;
     any = true;
     Surface s;
-    frame.surface(frame, ray, on_path(face.hit, *path), &s);
+    frame.kernels.surface(frame, ray, on_path(face.hit, *path), &s);
     const Footprints& footprints = has(mask, Effect::mip_map) ? s.footprint : kNoFootprints;
     float alpha =
         hit_alpha<Effect::alpha_blend>(frame, *s.material, face.hit.triangle, face.hit.u, face.hit.v, footprints);
@@ -266,7 +267,7 @@ bool blend_layers(Tracer* tracer, const Ray& ray, const Contact& contact, Vec3* 
   }
   float most = max_component(path->weight);
   const std::uint32_t further = frame.settings.ray_depth - path->depth;
-  return !any || (most > 0 && !leave_out(tracer, most * frame.radiance_bounds.after[further]));
+  return !any || (most > 0 && !leave_out(tracer, most * frame.cut_off.radiance_bounds.after[further]));
 }
 
 // Returns the face that a ray meets behind the blending surfaces of a contact: an opaque one, else a body that it
@@ -293,7 +294,7 @@ Vec3 radiance_from(Tracer* tracer, Ray ray, Hit hit, const Surface* first, Path<
   const EffectMask plan = plan_of<mask>(frame);
   Vec3 sum = {0, 0, 0}, carried = {1, 1, 1};  // throughput of the blended surfaces
   for (std::uint32_t layer = 0; layer < kTransparentLayerMax; ++layer) {
-    if (layer > 0) frame.accel_info->closest(frame.accel, ray, filter, &hit, &tracer->stats);
+    if (layer > 0) frame.geometry.accel_info->closest(frame.geometry.accel, ray, filter, &hit, &tracer->stats);
     if (hit.triangle == kNoTriangle) {
       const Vec3 behind = radiance_behind<mask>(frame, ray.direction);
       if constexpr (kBranches<mask>) add_certain(tracer, path.weight * behind);
@@ -302,7 +303,7 @@ Vec3 radiance_from(Tracer* tracer, Ray ray, Hit hit, const Surface* first, Path<
     if constexpr (has(mask, Effect::mip_map)) path.distance += hit.t;
     Surface found;
     const Surface* s = first;
-    if (layer > 0 || !first) frame.surface(frame, ray, on_path(hit, path), &found), s = &found;
+    if (layer > 0 || !first) frame.kernels.surface(frame, ray, on_path(hit, path), &found), s = &found;
     if constexpr (has(mask, Effect::absorption)) {
       if (path.media.depth && has(plan, Effect::absorption)) {
         effect_entered<Effect::absorption>();
@@ -327,7 +328,8 @@ Vec3 radiance_from(Tracer* tracer, Ray ray, Hit hit, const Surface* first, Path<
           ray.origin = safe_origin(*s, -1);
           continue;
         }
-        if (next->hit.triangle != hit.triangle) frame.surface(frame, ray, on_path(next->hit, path), &found), s = &found;
+        if (next->hit.triangle != hit.triangle)
+          frame.kernels.surface(frame, ray, on_path(next->hit, path), &found), s = &found;
         if (s == &found) add_later_light<mask>(tracer, path, &found);
         return sum + carried * shade<mask>(tracer, ray, *s, &contact, path);
       }
@@ -342,7 +344,7 @@ template <EffectMask mask>
 Vec3 radiance(Tracer* tracer, const Ray& ray, const Path<mask>& path) {
   const FrameData& frame = *tracer->frame;
   Hit hit;
-  frame.accel_info->closest(frame.accel, ray, visible_filter(frame), &hit, &tracer->stats);
+  frame.geometry.accel_info->closest(frame.geometry.accel, ray, visible_filter(frame), &hit, &tracer->stats);
   return radiance_from<mask>(tracer, ray, hit, nullptr, path);
 }
 
@@ -350,7 +352,7 @@ template <EffectMask mask>
 Vec3 primary_radiance(Tracer* tracer, const Ray& ray, const Hit& hit, const Surface* surface) {
   Path<mask> path = {};
   path.weight = {1, 1, 1};
-  if constexpr (has(mask, Effect::refraction)) path.media = tracer->frame->eye_media;
+  if constexpr (has(mask, Effect::refraction)) path.media = tracer->frame->view.eye_media;
   if constexpr (kBranches<mask>) begin_branching(tracer);
   return radiance_from<mask>(tracer, ray, hit, surface, path);
 }

@@ -13,6 +13,7 @@
 #include "shade/surface.h"
 #include "shade/texture.h"
 #include "shade/tile_shadows.h"
+#include "shade/tracer.h"
 
 namespace pocketray {
 
@@ -75,7 +76,7 @@ template <EffectMask mask>
 Vec3 clear_transmittance(Tracer* tracer, Ray ray, const ShadowContext& context, bool at_first_hit) {
   const FrameData& frame = *tracer->frame;
   const EffectMask plan = plan_of<mask>(frame);
-  HitFilter filter = {frame.accept_clear, &context, frame.filters_read_point};
+  HitFilter filter = {frame.filters.accept_clear, &context, frame.filters.read_point};
   Vec3 result = {1, 1, 1};
   Vec3 absorbed_begin = {0, 0, 0}, absorbed_end = {0, 0, 0};  // Σ absorption × distance at entries and exits
   Vec3 open = {0, 0, 0};                                      // absorption of the bodies entered and not yet left
@@ -85,8 +86,8 @@ Vec3 clear_transmittance(Tracer* tracer, Ray ray, const ShadowContext& context, 
   for (std::uint32_t layer = 0; layer < kTransparentLayerMax; ++layer) {
     Hit hit;
     ++tracer->rays[static_cast<int>(RayKind::shadow)];
-    const AccelTraversal& rays = at_first_hit && layer == 0 ? *frame.first_rays : *frame.accel_info;
-    rays.closest(frame.accel, ray, &filter, &hit, &tracer->stats);
+    const AccelTraversal& rays = at_first_hit && layer == 0 ? *frame.geometry.first_rays : *frame.geometry.accel_info;
+    rays.closest(frame.geometry.accel, ray, &filter, &hit, &tracer->stats);
     if (hit.triangle == kNoTriangle) {
       if (has(plan, Effect::absorption)) {
         float end = (passed + ray.t_max) * unit;
@@ -98,7 +99,7 @@ Vec3 clear_transmittance(Tracer* tracer, Ray ray, const ShadowContext& context, 
       return result;
     }
     Surface s;
-    frame.surface(frame, ray, hit, &s);
+    frame.kernels.surface(frame, ray, hit, &s);
     Contact contact;
     gather_contact(frame, s, hit, &filter, &contact, &tracer->stats);
     if (has(plan, Effect::refraction)) {
@@ -144,9 +145,9 @@ template <EffectMask mask>
 [[gnu::noinline]] Vec3 traced_shadow(Tracer* tracer, const Surface& s, const LightRun& run, std::uint32_t light,
                                      const LightSample* known, bool at_first_hit, bool passes) {
   const FrameData& frame = *tracer->frame;
-  const LightPoint* emitter = emitter_of(frame.lights[light]);
+  const LightPoint* emitter = emitter_of(frame.lights.points[light]);
   bool blocked = false;
-  if (!passes && emitter && frame.point_groups.groups.count) {
+  if (!passes && emitter && frame.lights.point_groups.groups.count) {
     --tracer->rays[static_cast<int>(RayKind::shadow)];  // is_point_blocked() counts its own rays
     blocked = is_point_blocked(tracer, s, light, at_first_hit);
     passes = true;
@@ -155,14 +156,14 @@ template <EffectMask mask>
   if (blocked) return {0, 0, 0};
   if (passes && !kClear) return {1, 1, 1};
   LightSample sample;
-  if (!known) run.sample(frame.lights[light], s.point, &sample), known = &sample;
+  if (!known) run.sample(frame.lights.points[light], s.point, &sample), known = &sample;
   const Ray ray = shadow_ray(frame, s, *known);
   ShadowContext context = {&frame, emitter};
-  HitFilter opaque = {frame.accept_opaque, &context, frame.filters_read_point};
-  bool filtered = frame.filter_every_shadow || emitter;
+  HitFilter opaque = {frame.filters.accept_opaque, &context, frame.filters.read_point};
+  bool filtered = frame.filters.every_shadow || emitter;
   if (!passes) {
-    const AccelTraversal& rays = at_first_hit ? *frame.first_rays : *frame.accel_info;
-    blocked = rays.occluded(frame.accel, ray, filtered ? &opaque : nullptr, &tracer->stats);
+    const AccelTraversal& rays = at_first_hit ? *frame.geometry.first_rays : *frame.geometry.accel_info;
+    blocked = rays.occluded(frame.geometry.accel, ray, filtered ? &opaque : nullptr, &tracer->stats);
   }
   if (blocked) return {0, 0, 0};
   if constexpr (kClear) {
@@ -172,7 +173,7 @@ template <EffectMask mask>
   return {1, 1, 1};
 }
 
-// Fraction of the light of frame.lights[light] (in the run) that arrives: zero or one, or between if something
+// Fraction of the light of frame.lights.points[light] (in the run) that arrives: zero or one, or between if something
 // transparent is in the way. `sample` is the light's sample at the surface, or null.
 template <EffectMask mask>
 [[gnu::always_inline]] inline Vec3 shadow(Tracer* tracer, const Surface& s, const LightRun& run, std::uint32_t light,

@@ -34,7 +34,7 @@ SourceSearch::SourceSearch(Tracer* tracer, const Surface& surface, const Materia
       diffuse_most_(max_component(diffuse_)),
       specular_most_(0),
       entries_(tracer->light_entries) {
-  CHECK_LE(search_entry_count(frame_.lights.count), entries_.count);
+  CHECK_LE(search_entry_count(frame_.lights.points.count), entries_.count);
   if (shines_) {
     effect_entered<Effect::specular>();
     specular_ = reflectance_at(surface, m.specular, m.specular_tinted);
@@ -45,19 +45,19 @@ SourceSearch::SourceSearch(Tracer* tracer, const Surface& surface, const Materia
     const Material coat = coat_lobe(surface.coat.roughness);
     specular_most_ += surface.coat.lobe * kBrdfList[coat.brdf]->peak(coat).x;
   }
-  for (std::uint16_t run = 0; run < frame_.light_run_count; ++run) {
-    const std::uint32_t root = frame_.light_tree.roots[run];
+  for (std::uint16_t run = 0; run < frame_.lights.run_count; ++run) {
+    const std::uint32_t root = frame_.lights.tree.roots[run];
     if (root != kNone) {
       add_node(root, run);
       continue;
     }
-    for (std::uint32_t i = frame_.light_runs[run].begin; i < frame_.light_runs[run].end; ++i) add_light(i, run);
+    for (std::uint32_t i = frame_.lights.runs[run].begin; i < frame_.lights.runs[run].end; ++i) add_light(i, run);
   }
 }
 
 bool SourceSearch::radiance(const LightPoint& light, std::uint32_t run, Vec3* radiance) const {
   LightSample sample;
-  if (!lights_up(frame_, surface_, frame_.light_runs[run], light, &sample)) return false;
+  if (!lights_up(frame_, surface_, frame_.lights.runs[run], light, &sample)) return false;
   if (!has(frame_.mask, Effect::shadow) && is_below(surface_, sample.direction)) return false;
   const float cosine = dot(surface_.normal, sample.direction);
   const bool is_coated = has(frame_.mask, Effect::clear_coat);
@@ -103,7 +103,7 @@ void SourceSearch::sum_up() {
 
 void SourceSearch::add_light(std::uint32_t light, std::uint16_t run) {
   LightEntry entry;
-  if (!radiance(frame_.lights[light], run, &entry.radiance)) return;
+  if (!radiance(frame_.lights.points[light], run, &entry.radiance)) return;
   entry.most = max_component(entry.radiance);
   if (!(entry.most > 0)) return;
   entry.light = light, entry.node = kNone, entry.run = run;
@@ -112,7 +112,7 @@ void SourceSearch::add_light(std::uint32_t light, std::uint16_t run) {
 
 // Its bound puts all lights of the group at the point of its box nearest to the surface, at their steepest angle.
 void SourceSearch::add_node(std::uint32_t index, std::uint16_t run) {
-  const LightNode& node = frame_.light_tree.nodes[index];
+  const LightNode& node = frame_.lights.tree.nodes[index];
   const Vec3 low = node.box.low - surface_.point, high = node.box.high - surface_.point, &n = surface_.normal;
   const Vec3 near = max(max(low, -high), Vec3{0, 0, 0}), above = max(n * low, n * high);
   constexpr float kRounding = 1e-5f;  // chosen: several times the rounding error below
@@ -149,9 +149,9 @@ bool SourceSearch::take(LightEntry* light) {
   }
   const std::uint32_t index = entry.node;
   const std::uint16_t run = entry.run;
-  const LightNode& node = frame_.light_tree.nodes[index];
+  const LightNode& node = frame_.lights.tree.nodes[index];
   if (node.right == kNone) {
-    for (std::uint32_t i = node.begin; i < node.end; ++i) add_light(frame_.light_tree.order[i], run);
+    for (std::uint32_t i = node.begin; i < node.end; ++i) add_light(frame_.lights.tree.order[i], run);
   } else {
     add_node(index + 1, run);
     add_node(node.right, run);
@@ -164,7 +164,7 @@ Vec3 SourceSearch::estimate() const {
   each_entry([&](const LightEntry& entry) {
     Vec3 unblocked = entry.radiance;
     if (entry.node != kNone) {
-      if (!radiance(frame_.light_tree.nodes[entry.node].mean, entry.run, &unblocked)) return;
+      if (!radiance(frame_.lights.tree.nodes[entry.node].mean, entry.run, &unblocked)) return;
       unblocked = min(unblocked, Vec3{entry.most, entry.most, entry.most});
     }
     sum += unblocked;
@@ -175,7 +175,8 @@ Vec3 SourceSearch::estimate() const {
 void find_tile_surfaces(Tracer* tracer, const RayPacket& rays, const Hit* hits, TileShadows* shadows) {
   const FrameData& frame = *tracer->frame;
   for (std::uint32_t i = 0; i < rays.count; ++i)
-    if (hits[i].triangle != kNoTriangle) frame.first_surface(frame, ray_of(rays, i), hits[i], &shadows->surface[i]);
+    if (hits[i].triangle != kNoTriangle)
+      frame.kernels.first_surface(frame, ray_of(rays, i), hits[i], &shadows->surface[i]);
   std::memset(shadows->traced, 0, sizeof shadows->traced);
 }
 

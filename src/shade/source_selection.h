@@ -9,6 +9,7 @@
 #include "effect/effect_probe.h"
 #include "shade/frame_data.h"
 #include "shade/surface.h"
+#include "shade/tracer.h"
 
 namespace pocketray {
 

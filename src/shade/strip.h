@@ -21,6 +21,16 @@ constexpr std::uint32_t morton_place(std::uint32_t column, std::uint32_t row) {
 // Columns of a packet in a strip of this many rows: several tiles side by side if there are few rows.
 constexpr std::uint32_t packet_columns(std::uint32_t row_count) { return kTileSide * (kTileRows / row_count); }
 
+// Consecutive rows of pixels, the first of which is row `first_row` of the picture.
+struct PixelRows {
+  Vec3* pixels;
+  std::uint32_t width, first_row;
+
+  Vec3& at(std::uint32_t column, std::uint32_t row) const {
+    return pixels[static_cast<std::size_t>(row - first_row) * width + column];
+  }
+};
+
 struct TileStrip {
   std::uint32_t row, column;                      // of the first tile's first pixel
   std::uint32_t row_count;                        // up to the last row with a pixel, at most kTileRows

@@ -11,7 +11,8 @@ namespace {
 
 // Flips the interpolated normal to the side of the geometric normal; falls back to the latter if there is none.
 Vec3 smooth_normal(const FrameData& frame, const Triangle& t, float w, float u, float v, const Vec3& geometric) {
-  Vec3 n = normalize(frame.normals[t.vertex(0)] * w + frame.normals[t.vertex(1)] * u + frame.normals[t.vertex(2)] * v);
+  Vec3 n = normalize(frame.geometry.normals[t.vertex(0)] * w + frame.geometry.normals[t.vertex(1)] * u +
+                     frame.geometry.normals[t.vertex(2)] * v);
   if (is_zero(n)) return geometric;
   return dot(n, geometric) < 0 ? -n : n;
 }
@@ -38,7 +39,7 @@ void keep_off_edges(const Vec3& a, const Vec3& b, const Vec3& c, float least_wei
 
 template <EffectMask mask>
 inline Vec3 texture_color(const FrameData& frame, const TextureUse& use, const Surface& s) {
-  if constexpr (has(mask, Effect::second_uv)) return frame.color(frame, use, s).rgb;
+  if constexpr (has(mask, Effect::second_uv)) return frame.kernels.color(frame, use, s).rgb;
   const Scene& scene = *frame.scene;
   return color_at<has(mask, Effect::mip_map)>(scene, use, hit_uv(scene, s.hit.triangle, s.hit.u, s.hit.v),
                                               frame.settings.texture_filter, s.footprint)
@@ -81,7 +82,7 @@ inline void add_glow(const FrameData& frame, Surface* s) {
 
 inline void find_footprint(const FrameData& frame, float t, const Vec3& direction, const Vec3& perpendicular,
                            const Vec3& outward, Array<const Vec2> uvs, const Triangle& triangle, Footprint* result) {
-  result->area = footprint(frame.cone, t, direction, perpendicular, outward, uvs, triangle);
+  result->area = footprint(frame.view.cone, t, direction, perpendicular, outward, uvs, triangle);
   if (frame.settings.texture_filter == TextureFilter::anisotropic)
     result->axis = footprint_axis(frame, t, direction, perpendicular, outward, uvs, triangle);
 }
@@ -91,7 +92,8 @@ void evaluate_surface(const FrameData& frame, const Ray& ray, const Hit& hit, Su
   const Scene& scene = *frame.scene;
   const Triangle& t = scene.triangles[hit.triangle];
   const Material& m = scene.materials[t.material()];
-  const Vec3 &a = frame.positions[t.vertex(0)], &b = frame.positions[t.vertex(1)], &c = frame.positions[t.vertex(2)];
+  const Vec3 &a = frame.geometry.positions[t.vertex(0)], &b = frame.geometry.positions[t.vertex(1)],
+             &c = frame.geometry.positions[t.vertex(2)];
   float u = hit.u, v = hit.v, w = 1 - u - v;
   s->material = &m;
   s->hit = {u, v, hit.triangle};
@@ -109,7 +111,7 @@ void evaluate_surface(const FrameData& frame, const Ray& ray, const Hit& hit, Su
   s->normal = s->geometric;
   if constexpr (has(mask, Effect::smooth_normal)) {
     effect_entered<Effect::smooth_normal>();
-    if (frame.normals.count) s->normal = smooth_normal(frame, t, w, u, v, s->geometric);
+    if (frame.geometry.normals.count) s->normal = smooth_normal(frame, t, w, u, v, s->geometric);
   }
   if constexpr (has(mask, Effect::mip_map)) {
     find_footprint(frame, hit.t, ray.direction, perpendicular, outward, scene.uvs, t, &s->footprint);
@@ -164,7 +166,7 @@ struct GlowPart {
 };
 
 // Parts for scenes whose textures use both sets of texture coordinates: fewer instances, which look textures up by
-// FrameData::color.
+// Kernels::color.
 constexpr EffectMask kSecond = bit(Effect::second_uv) | bit(Effect::texture);
 struct SecondSurfacePart {
   using Function = SurfaceFunction;
@@ -199,14 +201,14 @@ GlowFunction find_glow_function(EffectMask mask) {
 
 Vec3 curved_origin(const FrameData& frame, const Surface& s) {
   Surface moved = s;
-  if (frame.normals.count) {
+  if (frame.geometry.normals.count) {
     const Triangle& t = frame.scene->triangles[s.hit.triangle];
     float weight[3] = {1 - s.hit.u - s.hit.v, s.hit.u, s.hit.v};
     Vec3 lift = {0, 0, 0};
     for (int i = 0; i < 3; ++i) {
-      Vec3 n = frame.normals[t.vertex(i)];
+      Vec3 n = frame.geometry.normals[t.vertex(i)];
       if (dot(n, s.normal) < 0) n = -n;
-      float below = dot(s.point - frame.positions[t.vertex(i)], n);
+      float below = dot(s.point - frame.geometry.positions[t.vertex(i)], n);
       if (below < 0) lift += n * (-below * weight[i]);
     }
     moved.point = s.point + lift;

@@ -286,7 +286,8 @@ Vec3 surface_numbers(const FrameData& frame, const TextureUse& use, const Surfac
 
 template <bool has_levels, bool both_sets>
 void set_texture_functions(FrameData* frame) {
-  frame->color = surface_color<has_levels, both_sets>, frame->numbers = surface_numbers<has_levels, both_sets>;
+  frame->kernels.color = surface_color<has_levels, both_sets>,
+  frame->kernels.numbers = surface_numbers<has_levels, both_sets>;
 }
 
 }  // namespace
@@ -299,7 +300,8 @@ AlphaFunction find_alpha_function(EffectMask mask) {
 void find_texture_functions(FrameData* frame) {
   constexpr bool levels = has(kAllEffects, Effect::mip_map), both = has(kAllEffects, Effect::second_uv);
   CHECK(frame != nullptr);
-  frame->alpha = find_alpha_function(frame->mask);
+  frame->kernels.alpha = find_alpha_function(frame->mask);
+  CHECK(frame->kernels.alpha != nullptr);
   if (has(frame->mask, Effect::second_uv))
     has(frame->mask, Effect::mip_map) ? set_texture_functions<levels, both>(frame)
                                       : set_texture_functions<false, both>(frame);

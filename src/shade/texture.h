@@ -66,7 +66,7 @@ float hit_alpha(const FrameData& frame, const Material& material, std::uint32_t 
                 const Footprints& footprints = kNoFootprints) {
   static_assert(effect == Effect::alpha_mask || effect == Effect::alpha_blend, "no other effect reads alpha");
   effect_entered<effect>();
-  return frame.alpha(*frame.scene, material, triangle, u, v, frame.settings.texture_filter, footprints);
+  return frame.kernels.alpha(*frame.scene, material, triangle, u, v, frame.settings.texture_filter, footprints);
 }
 
 // Sets the frame's color, numbers and alpha for its mask.

@@ -5,6 +5,7 @@
 #include "shade/even_points.h"
 #include "shade/filters.h"
 #include "shade/pixel.h"
+#include "shade/strip.h"
 #include "shade/tile_shadows.h"
 
 namespace pocketray {
@@ -31,7 +32,7 @@ void set_directions(const CameraRays& camera, const Tile& tile, const Vec2& offs
 void keep_first_hit(Tracer* tracer, std::uint32_t sample, std::uint32_t column, std::uint32_t row, const Hit& hit) {
   const FrameData& frame = *tracer->frame;
   std::size_t width = frame.settings.width;
-  frame.first_hits[(std::size_t(sample) * frame.settings.height + row) * width + column] = hit;
+  frame.kept.first_hits[(std::size_t(sample) * frame.settings.height + row) * width + column] = hit;
 }
 
 void observe_pixel(Tracer* tracer, std::uint32_t column, std::uint32_t row) {
@@ -49,12 +50,12 @@ Vec3 pixel_radiance(Tracer* tracer, std::uint32_t column, std::uint32_t row, Sur
   for (std::uint32_t sample = 0; sample < sample_count; ++sample) {
     Ray ray = pixel_ray(frame, column, row, rook_point(sample, sample_count));
     Hit hit;
-    frame.first_rays->closest(frame.accel, ray, visible_filter(frame), &hit, &tracer->stats);
-    if (frame.first_hits) keep_first_hit(tracer, sample, column, row, hit);
+    frame.geometry.first_rays->closest(frame.geometry.accel, ray, visible_filter(frame), &hit, &tracer->stats);
+    if (frame.kept.first_hits) keep_first_hit(tracer, sample, column, row, hit);
     Surface surface;
     if (first && sample == 0) first->material = nullptr;
-    if ((frame.first_hits || (first && sample == 0)) && hit.triangle != kNoTriangle) {
-      frame.surface(frame, ray, hit, &surface);
+    if ((frame.kept.first_hits || (first && sample == 0)) && hit.triangle != kNoTriangle) {
+      frame.kernels.surface(frame, ray, hit, &surface);
       tracer->first_surface = &surface;
       if (first && sample == 0) *first = surface;
     }
@@ -68,8 +69,8 @@ void add_sample(Tracer* tracer, const Tile& tile, const RayPacket& packet, const
   const FrameData& frame = *tracer->frame;
   CHECK_EQ(tile.count, packet.count);
   TileShadows shadows;
-  if (frame.find_shadows) {
-    frame.find_shadows(tracer, packet, hits, &shadows);
+  if (frame.kernels.find_shadows) {
+    frame.kernels.find_shadows(tracer, packet, hits, &shadows);
     tracer->tile_shadows = &shadows;
   }
   const bool has_plain_background = !has(frame.mask, Effect::environment);
@@ -81,7 +82,8 @@ void add_sample(Tracer* tracer, const Tile& tile, const RayPacket& packet, const
       continue;
     }
     tracer->tile_pixel = i;
-    tracer->first_surface = frame.find_shadows && hits[i].triangle != kNoTriangle ? &shadows.surface[i] : nullptr;
+    tracer->first_surface =
+        frame.kernels.find_shadows && hits[i].triangle != kNoTriangle ? &shadows.surface[i] : nullptr;
     observe_pixel(tracer, tile.column[i], tile.row[i]);
     sum[i] += sample_radiance(tracer, ray_of(packet, i), hits[i], tracer->first_surface);
   }
@@ -96,12 +98,13 @@ void trace_tile(Tracer* tracer, const Tile& tile, const PixelRows& image) {
   if (sample_count > 1) effect_entered<Effect::supersampling>();
   Vec3 sum[kPacketMax] = {};
   RayPacket packet;
-  packet.origin = frame.camera.eye, packet.t_max = __builtin_inff(), packet.count = tile.count;
+  packet.origin = frame.view.camera.eye, packet.t_max = __builtin_inff(), packet.count = tile.count;
   for (std::uint32_t sample = 0; sample < sample_count; ++sample) {
-    set_directions(frame.camera, tile, rook_point(sample, sample_count), &packet);
+    set_directions(frame.view.camera, tile, rook_point(sample, sample_count), &packet);
     Hit hits[kPacketMax];
-    frame.first_rays->closest_packet(frame.accel, packet, visible_filter(frame), hits, &tracer->stats);
-    if (frame.first_hits)
+    frame.geometry.first_rays->closest_packet(frame.geometry.accel, packet, visible_filter(frame), hits,
+                                              &tracer->stats);
+    if (frame.kept.first_hits)
       for (std::uint32_t i = 0; i < tile.count; ++i)
         keep_first_hit(tracer, sample, tile.column[i], tile.row[i], hits[i]);
     add_sample(tracer, tile, packet, hits, sum);

@@ -28,7 +28,7 @@ void find_views(const FrameData& frame, const TileReceivers& receivers, TileLamp
   for (std::uint32_t k = 0; k < receivers.count; ++k) {
     const std::uint32_t pixel = receivers.pixel[k];
     const Surface& s = shadows->surface[pixel];
-    const LightPoint& point = frame.lights[lamp->first];
+    const LightPoint& point = frame.lights.points[lamp->first];
     if (is_own(frame, s, point) && is_unlit_by_own(frame, s, point)) continue;
     const PolygonView view = tile.view[pixel] = view_polygon(polygon, s);
     tile.viewed.set(pixel);
@@ -75,7 +75,7 @@ class TilePoints {
         first_(lamp.first),
         receivers_(receivers),
         shadows_(shadows) {
-    const PointGroups& groups = frame_.point_groups;
+    const PointGroups& groups = frame_.lights.point_groups;
     const std::uint32_t place = first_ - groups.first_point;
     groups_ = &groups.groups[place];
     order_ = &groups.order[place];
@@ -84,7 +84,7 @@ class TilePoints {
 
   // For a light whose last points exceed kTileLightMax, finds only which pixels it lights up.
   void find() {
-    const std::uint32_t all = frame_.point_groups.points_of_light, count = std::min(all, kTileLightMax - first_);
+    const std::uint32_t all = frame_.lights.point_groups.points_of_light, count = std::min(all, kTileLightMax - first_);
     std::uint64_t matter = bits_of(lamp_.views.matter), open = ~std::uint64_t(0), blocked = open;
     for (std::uint32_t point = 0; point < count; ++point) matter |= find_probes(point);
     if (count == all) test(groups_[0], matter);
@@ -110,7 +110,7 @@ class TilePoints {
       if (lamp_.views.lit[place] || lamp_.views.unlit[place]) continue;
       const Surface& s = shadows_->surface[place];
       LightSample sample;
-      if (!lights_up(frame_, s, lamp_.run, frame_.lights[light], &sample)) continue;
+      if (!lights_up(frame_, s, lamp_.run, frame_.lights.points[light], &sample)) continue;
       lit.set(place);
       if (light < kTileSampleMax) shadows_->sample[light][place] = {sample.direction, sample.irradiance};
       if (!(dot(s.geometric, sample.direction) > 0)) continue;
@@ -125,8 +125,8 @@ class TilePoints {
   // Adds the rays to a point to the packet, for pixels that probe it and do not know the result.
   void add_rays(std::uint32_t point, std::uint64_t pixels) {
     const std::uint64_t fresh = pixels & probes_[point] & ~known_[point];
-    const Vec3& position = frame_.lights[first_ + point].position;
-    begin_point(frame_.lights[first_ + point]);
+    const Vec3& position = frame_.lights.points[first_ + point].position;
+    begin_point(frame_.lights.points[first_ + point]);
     known_[point] |= fresh;
     for (std::uint64_t rest = fresh; rest; rest &= rest - 1) {
       const std::uint32_t place = static_cast<std::uint32_t>(__builtin_ctzll(rest));
@@ -138,16 +138,15 @@ class TilePoints {
   }
   // Flushes the packet if the point is in another plane: its rays end in one plane, whose triangles do not block them.
   void begin_point(const LightPoint& light) {
-    const bool same = packet_.count == 0 || (dot(light.direction, light_->direction) > 1 - 0x1p-16f &&
-                                             is_in_plane(*light_, light.position));
+    const bool same = packet_.count == 0 ||
+                      (dot(light.direction, light_->direction) > 1 - 0x1p-16f && is_in_plane(*light_, light.position));
     if (!same) trace();
     light_ = &light;
   }
   void trace() {
     if (packet_.count == 0) return;
     tracer_->rays[static_cast<int>(RayKind::shadow)] += packet_.count;
-    for (std::uint64_t found = trace_packet(tracer_, packet_, light_); found;
-         found &= found - 1) {
+    for (std::uint64_t found = trace_packet(tracer_, packet_, light_); found; found &= found - 1) {
       const int ray = __builtin_ctzll(found);
       blocked_[point_[ray]] |= std::uint64_t(1) << pixel_[ray];
     }
@@ -189,7 +188,7 @@ class TilePoints {
   const PointGroup* groups_;
   const std::uint8_t* order_;
   SegmentPacket packet_;
-  const LightPoint* light_;  // end of the packet's rays
+  const LightPoint* light_;                                                              // end of the packet's rays
   std::uint8_t pixel_[kPacketMax], point_[kPacketMax];                                   // by ray
   std::uint64_t probes_[kTileLightMax], known_[kTileLightMax], blocked_[kTileLightMax];  // by point
 };
@@ -198,12 +197,12 @@ class TilePoints {
 
 void find_lamp_tile_shadows(Tracer* tracer, const RayPacket& rays, const Hit* hits, TileShadows* shadows) {
   const FrameData& frame = *tracer->frame;
-  const PointGroups& groups = frame.point_groups;
+  const PointGroups& groups = frame.lights.point_groups;
   TileReceivers receivers;
   find_receivers(frame, rays, hits, shadows, &receivers);
   for (TilePolygon& polygon : shadows->polygons) polygon.viewed = polygon.open = polygon.blocked = {};
-  for (int r = 0; r < frame.light_run_count; ++r) {
-    const LightRun& run = frame.light_runs[r];
+  for (int r = 0; r < frame.lights.run_count; ++r) {
+    const LightRun& run = frame.lights.runs[r];
     const bool has_groups = groups.groups.count && run.begin == groups.first_point;
     const bool has_lamps = has_groups || run.polygons;
     const std::uint32_t step = has_lamps ? frame.settings.points_per_area_light : 1;

@@ -5,6 +5,7 @@
 #include "shade/filters.h"
 #include "shade/lights.h"
 #include "shade/tile_shadows.h"
+#include "shade/tracer.h"
 
 namespace pocketray {
 
@@ -16,12 +17,12 @@ inline bool receives(const FrameData& frame, const Surface& s) {
 // highlights.
 [[gnu::always_inline]] inline bool cannot_matter(const FrameData& frame, const Surface& s, const Vec3& irradiance) {
   if (!is_zero(s.material->specular)) return false;
-  return max_component(s.diffuse * (1 / kPiF) * irradiance) <= frame.left_out_max && !shines_by_coat(frame, s);
+  return max_component(s.diffuse * (1 / kPiF) * irradiance) <= frame.cut_off.left_out_max && !shines_by_coat(frame, s);
 }
 [[gnu::always_inline]] inline bool cannot_matter(const FrameData& frame, const Surface& s, const LightSample& sample) {
   if (!is_zero(s.material->specular)) return false;
   Vec3 most = s.diffuse * (1 / kPiF) * sample.irradiance * dot(s.normal, sample.direction);
-  return max_component(most) <= frame.left_out_max && !shines_by_coat(frame, s);
+  return max_component(most) <= frame.cut_off.left_out_max && !shines_by_coat(frame, s);
 }
 
 // Pixels whose first hits receive light, and the origins of their shadow rays, by pixel.
@@ -43,12 +44,12 @@ struct KnownViews {
   TileMask lit, unlit, matter;
 };
 
-// Traces the shadow rays to frame.lights[i], in the run. Inline, because most lights have no known views.
+// Traces the shadow rays to frame.lights.points[i], in the run. Inline, because most lights have no known views.
 [[gnu::always_inline]] inline void trace_light(Tracer* tracer, const LightRun& run, std::uint32_t i,
                                                const TileReceivers& receivers, const KnownViews* views,
                                                TileShadows* shadows) {
   const FrameData& frame = *tracer->frame;
-  const LightPoint& light = frame.lights[i];
+  const LightPoint& light = frame.lights.points[i];
   const bool keeps_sample = i < kTileSampleMax;
   TileMask lit = {}, traced = {}, hidden = {};
   std::uint8_t pixel[kPacketMax];

@@ -9,7 +9,7 @@ void find_receivers(const FrameData& frame, const RayPacket& rays, const Hit* hi
   for (std::uint32_t i = 0; i < rays.count; ++i) {
     if (hits[i].triangle == kNoTriangle) continue;
     Surface& s = shadows->surface[i];
-    frame.first_surface(frame, ray_of(rays, i), hits[i], &s);
+    frame.kernels.first_surface(frame, ray_of(rays, i), hits[i], &s);
     receivers->origin[i] = safe_origin(s, 1);
     if (receives(frame, s)) receivers->pixel[receivers->count++] = static_cast<std::uint8_t>(i);
   }
@@ -18,17 +18,18 @@ void find_receivers(const FrameData& frame, const RayPacket& rays, const Hit* hi
 std::uint64_t trace_packet(Tracer* tracer, const SegmentPacket& packet, const LightPoint* emitter) {
   const FrameData& frame = *tracer->frame;
   ShadowContext context = {&frame, emitter};
-  HitFilter opaque = {frame.accept_opaque, &context, frame.filters_read_point};
-  bool filtered = frame.filter_every_shadow || emitter != nullptr;
-  return frame.first_rays->occluded_packet(frame.accel, packet, filtered ? &opaque : nullptr, &tracer->stats);
+  HitFilter opaque = {frame.filters.accept_opaque, &context, frame.filters.read_point};
+  bool filtered = frame.filters.every_shadow || emitter != nullptr;
+  return frame.geometry.first_rays->occluded_packet(frame.geometry.accel, packet, filtered ? &opaque : nullptr,
+                                                    &tracer->stats);
 }
 
 void find_tile_shadows(Tracer* tracer, const RayPacket& rays, const Hit* hits, TileShadows* shadows) {
   const FrameData& frame = *tracer->frame;
   TileReceivers receivers;
   find_receivers(frame, rays, hits, shadows, &receivers);
-  for (int r = 0; r < frame.light_run_count; ++r) {
-    const LightRun& run = frame.light_runs[r];
+  for (int r = 0; r < frame.lights.run_count; ++r) {
+    const LightRun& run = frame.lights.runs[r];
     for (std::uint32_t i = run.begin; i < run.end && i < kTileLightMax; ++i)
       trace_light(tracer, run, i, receivers, nullptr, shadows);
   }

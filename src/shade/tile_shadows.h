@@ -3,6 +3,7 @@
 #include <type_traits>
 
 #include "shade/polygon_light.h"
+#include "shade/tracer.h"
 
 namespace pocketray {
 

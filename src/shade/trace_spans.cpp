@@ -27,10 +27,10 @@ Vec3 pixel_aov(Tracer* tracer, std::uint32_t column, std::uint32_t row, Aov aov)
     return same(static_cast<float>(tracer->stats.nodes - before.nodes + tracer->stats.triangles - before.triangles));
   }
   if (aov == Aov::indirect_light) return pixel_indirect_light(tracer, column, row);
-  Ray ray = camera_ray(frame.camera, static_cast<float>(column) + 0.5f, static_cast<float>(row) + 0.5f);
+  Ray ray = camera_ray(frame.view.camera, static_cast<float>(column) + 0.5f, static_cast<float>(row) + 0.5f);
   ++tracer->rays[static_cast<int>(RayKind::primary)];
   Hit hit;
-  frame.accel_info->closest(frame.accel, ray, visible_filter(frame), &hit, &tracer->stats);
+  frame.geometry.accel_info->closest(frame.geometry.accel, ray, visible_filter(frame), &hit, &tracer->stats);
   Surface s;
   float passed;
   if (!visible_surface(tracer, &ray, &hit, &s, &passed)) return {0, 0, 0};
@@ -52,8 +52,8 @@ void add_pixels(const TileStrip& strip, std::uint32_t index, std::uint32_t pitch
 // of rays 8 pixels apart takes up to 7 times the instructions (Buddha, AVX2).
 void trace_pixels(Tracer* tracer, const Tile& tile, std::uint32_t pitch, const PixelRows& image) {
   const FrameData& frame = *tracer->frame;
-  const bool adjacent = pitch == 1 || frame.accel_info->packets_by_rays;
-  if (tile.count >= kPacketRaysMin && adjacent && !frame.ray_by_ray) return trace_tile(tracer, tile, image);
+  const bool adjacent = pitch == 1 || frame.geometry.accel_info->packets_by_rays;
+  if (tile.count >= kPacketRaysMin && adjacent && !frame.geometry.ray_by_ray) return trace_tile(tracer, tile, image);
   for (std::uint32_t i = 0; i < tile.count; ++i)
     image.at(tile.column[i], tile.row[i]) = pixel_radiance(tracer, tile.column[i], tile.row[i]);
 }
@@ -79,7 +79,7 @@ void trace_blocks(Tracer* tracer, const Span& span, std::uint32_t pitch, const P
     const Span pixel = {row, static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(x + 1)};
     TileStrip strip;
     make_strip(&pixel, 1, &strip);
-    tracer->frame->trace_strip(tracer, strip, image);
+    tracer->frame->kernels.trace_strip(tracer, strip, image);
   }
 }
 
@@ -96,8 +96,8 @@ void trace_span(Tracer* tracer, const Span& span, std::uint32_t pitch, Aov aov, 
 Vec2 sample_offset(std::uint32_t sample, std::uint32_t sample_count) { return rook_point(sample, sample_count); }
 
 Tracer make_tracer(const FrameData& frame) {
-  CHECK(frame.scene != nullptr && frame.accel_info != nullptr);
-  CHECK(frame.surface != nullptr && frame.radiance != nullptr && frame.first_rays != nullptr);
+  CHECK(frame.scene != nullptr && frame.geometry.accel_info != nullptr);
+  CHECK(frame.kernels.surface != nullptr && frame.kernels.radiance != nullptr && frame.geometry.first_rays != nullptr);
   Tracer tracer;
   tracer.frame = &frame;
   return tracer;
@@ -123,11 +123,11 @@ void trace_spans(Tracer* tracer, const Span* spans, std::uint32_t span_count, Ao
   const PixelRows rows = {image, frame.settings.width, 0};
   const std::uint32_t sample_count = frame.settings.samples_per_pixel;
   CHECK(sample_count >= 1 && sample_count <= kSampleCountMax);
-  if (aov == Aov::none && frame.trace_strip && pitch > 1) {
+  if (aov == Aov::none && frame.kernels.trace_strip && pitch > 1) {
     for (std::uint32_t i = 0; i < span_count; ++i) trace_blocks(tracer, spans[i], pitch, rows);
     return;
   }
-  if (aov != Aov::none || (frame.camera.orthographic && !frame.trace_strip)) {
+  if (aov != Aov::none || (frame.view.camera.orthographic && !frame.kernels.trace_strip)) {
     for (std::uint32_t i = 0; i < span_count; ++i) trace_span(tracer, spans[i], pitch, aov, rows);
     return;
   }
@@ -136,7 +136,8 @@ void trace_spans(Tracer* tracer, const Span* spans, std::uint32_t span_count, Ao
     count = strip_span_count(spans + i, span_count - i);
     CHECK_GT(count, 0u);
     make_strip(spans + i, count, &strip);
-    frame.trace_strip ? frame.trace_strip(tracer, strip, rows) : trace_strip(tracer, strip, pitch, rows);
+    frame.kernels.trace_strip ? frame.kernels.trace_strip(tracer, strip, rows)
+                              : trace_strip(tracer, strip, pitch, rows);
   }
 }
 

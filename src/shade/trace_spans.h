@@ -2,6 +2,7 @@
 #pragma once
 #include "base/span.h"
 #include "shade/frame_data.h"
+#include "shade/tracer.h"
 
 namespace pocketray {
 

@@ -96,10 +96,11 @@ void add_later_virtual_light(Tracer* tracer, const Vec3& weight, Surface* surfac
   const VirtualSource source = {lights, lights.geometry_max, tolerance};
   find_sources(source, s, SteppedIndices<1>(0, lights.count), &found);
   const ShadowContext context = {&frame, nullptr};
-  const HitFilter opaque = {frame.accept_opaque, &context, frame.filters_read_point};
+  const HitFilter opaque = {frame.filters.accept_opaque, &context, frame.filters.read_point};
   const Vec3 lit = arriving_light(source, s, found, [&](const Ray& ray) {
     ++tracer->rays[static_cast<int>(RayKind::shadow)];
-    return frame.accel_info->occluded(frame.accel, ray, frame.filter_every_shadow ? &opaque : nullptr, &tracer->stats);
+    return frame.geometry.accel_info->occluded(frame.geometry.accel, ray,
+                                               frame.filters.every_shadow ? &opaque : nullptr, &tracer->stats);
   });
   surface->glow += s.diffuse * (lit * (1 / kPiF));
 }

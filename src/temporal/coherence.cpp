@@ -102,8 +102,8 @@ void make_coherence(const FrameData& frame, const CoherencePlan& plan, Arena* ke
 
 bool fits(const Coherence& c, const FrameData& frame) {
   bool has_tables = c.tables.words.count > 0;
-  return frame.settings.samples_per_pixel <= c.plan.samples && frame.lights.count <= c.plan.light_points &&
-         frame.light_polygons.count <= c.plan.area_lights && (has_tables || !keeps_tables(frame.mask, c.plan)) &&
+  return frame.settings.samples_per_pixel <= c.plan.samples && frame.lights.points.count <= c.plan.light_points &&
+         frame.lights.polygons.count <= c.plan.area_lights && (has_tables || !keeps_tables(frame.mask, c.plan)) &&
          (c.given.count > 0 || !is_interleaved(frame.mask)) &&
          (c.virtual_lights.count > 0 || !has(frame.mask, Effect::instant_radiosity)) &&
          (c.paths.count > 0 || !is_compensated(frame.settings, frame.mask));
@@ -119,19 +119,19 @@ bool follow_frame(Coherence* c, const FrameData& frame, const char** why) {
   follow_geometry(frame, &c->moving);
   c->followed = signature_of(frame);
   *why = difference(c->signature, c->followed);
-  if (!*why && frame.lights.count != c->light_count) *why = "lights were added or removed";
+  if (!*why && frame.lights.points.count != c->light_count) *why = "lights were added or removed";
   if (!*why && has(frame.mask, Effect::instant_radiosity) &&
       !same_virtual_lights(c->virtual_lights[0], *virtual_lights_of(frame.indirect)))
     *why = "a virtual light changed";
-  if (!*why && c->tables.words.count && !is_empty(frame.accel.bounds) &&
-      !contains(c->tables.bounds, frame.accel.bounds))
+  if (!*why && c->tables.words.count && !is_empty(frame.geometry.accel.bounds) &&
+      !contains(c->tables.bounds, frame.geometry.accel.bounds))
     *why = "the scene outgrew the tables' grid";
   take_marks(&c->recoloring);
   if (!*why && c->recoloring.any) *why = follow_recoloring(frame, c->moving, &c->recoloring);
   for (ChangeCounts& counts : c->counts) counts = ChangeCounts();
   std::fill(c->row_traced.begin(), c->row_traced.end(), std::uint8_t(0));
   bool lights_changed =
-      !*why && (differ(c->lights.data, frame.lights) || differ(c->light_polygons.data, frame.light_polygons));
+      !*why && (differ(c->lights.data, frame.lights.points) || differ(c->light_polygons.data, frame.lights.polygons));
   if (lights_changed && (frame.mask & kEffectsBuilt & effects_with(&EffectRow::followed, Followed::as_lights_stand))) {
     *why = "a light changed; light selection is recomputed";
     lights_changed = false;
@@ -155,7 +155,7 @@ bool follow_frame(Coherence* c, const FrameData& frame, const char** why) {
                c->path_ends.data};
   if (*why) {
     std::fill(c->row_known.begin(), c->row_known.end(), std::uint8_t(0));
-    if (c->tables.words.count) reset_tables(frame.accel.bounds, &c->tables);
+    if (c->tables.words.count) reset_tables(frame.geometry.accel.bounds, &c->tables);
     if (c->marked.count) std::memset(c->marked.data, 0, c->marked.bytes());
     std::fill(c->shadows.begin(), c->shadows.end(), KnownShadows());
     forget_frame(c);
@@ -249,7 +249,7 @@ void spread_changes(Coherence* c) {
 void clear_changes(Coherence* c) {
   if (!c->tables.words.count) return;
   if (c->search.lights_changed) {  // every pixel with records is traced again
-    reset_tables(c->search.frame->accel.bounds, &c->tables);
+    reset_tables(c->search.frame->geometry.accel.bounds, &c->tables);
   } else {
     clear_dirty(&c->tables);
   }
@@ -266,39 +266,39 @@ void clear_changes(Coherence* c) {
 void start_recording(Coherence* c, FrameData* frame, Array<Tracer> tracers) {
   CHECK_LE(tracers.count, c->plan.threads);
   CHECK_LE(frame->settings.samples_per_pixel, c->plan.samples);
-  CHECK(frame->accel_info != &c->observed);  // else it would call itself
-  if (!c->plan.tables_only) frame->first_hits = c->first_hits.data;
-  if (is_compensated(frame->settings, frame->mask)) frame->compensation_paths = c->paths.data;
+  CHECK(frame->geometry.accel_info != &c->observed);  // else it would call itself
+  if (!c->plan.tables_only) frame->kept.first_hits = c->first_hits.data;
+  if (is_compensated(frame->settings, frame->mask)) frame->kept.compensation_paths = c->paths.data;
   if (c->tables.words.empty()) return;
   for (std::uint32_t i = 0; i < tracers.count; ++i) {
     c->observers[i] = MarkingObserver();
-    c->observers[i].accel_info = frame->accel_info;
+    c->observers[i].accel_info = frame->geometry.accel_info;
     c->observers[i].tables = &c->tables;
     c->observers[i].marked = c->marked.data;
     tracers[i].stats.observer = &c->observers[i];
   }
-  c->observed = observed(*frame->accel_info);
-  frame->accel_info = &c->observed;
-  if (c->plan.tables_only) frame->first_rays = &c->observed, frame->ray_by_ray = true;
+  c->observed = observed(*frame->geometry.accel_info);
+  frame->geometry.accel_info = &c->observed;
+  if (c->plan.tables_only) frame->geometry.first_rays = &c->observed, frame->geometry.ray_by_ray = true;
 }
 
 void stop_recording(const AccelInfo& accel_info, FrameData* frame, Array<Tracer> tracers) {
-  frame->first_hits = nullptr;
-  frame->compensation_paths = nullptr;
-  frame->accel_info = &accel_info;
-  frame->first_rays = &accel_info;
-  frame->ray_by_ray = false;
+  frame->kept.first_hits = nullptr;
+  frame->kept.compensation_paths = nullptr;
+  frame->geometry.accel_info = &accel_info;
+  frame->geometry.first_rays = &accel_info;
+  frame->geometry.ray_by_ray = false;
   for (Tracer& tracer : tracers) tracer.stats.observer = nullptr;
 }
 
 namespace {
 
 void keep(Coherence* c, const FrameData& frame) {
-  CHECK_LE(frame.lights.count, c->lights.count);
-  c->light_count = frame.lights.count;
-  std::copy(frame.lights.begin(), frame.lights.end(), c->lights.begin());
-  CHECK_LE(frame.light_polygons.count, c->light_polygons.count);
-  std::copy(frame.light_polygons.begin(), frame.light_polygons.end(), c->light_polygons.begin());
+  CHECK_LE(frame.lights.points.count, c->lights.count);
+  c->light_count = frame.lights.points.count;
+  std::copy(frame.lights.points.begin(), frame.lights.points.end(), c->lights.begin());
+  CHECK_LE(frame.lights.polygons.count, c->light_polygons.count);
+  std::copy(frame.lights.polygons.begin(), frame.lights.polygons.end(), c->light_polygons.begin());
   if (has(frame.mask, Effect::instant_radiosity)) c->virtual_lights[0] = *virtual_lights_of(frame.indirect);
   c->signature = c->followed;
   c->following = false;

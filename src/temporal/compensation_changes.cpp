@@ -17,19 +17,20 @@ Beam path_beam(const Box& points, const Box& ends, float room) {
 
 // Largest offset of a shadow ray from a ray's end, in each coordinate, as in measure_tile().
 float room_at_end(const FrameData& frame) {
-  return max_component(max(abs(frame.accel.bounds.low), abs(frame.accel.bounds.high))) * 0x1p-15f;
+  return max_component(max(abs(frame.geometry.accel.bounds.low), abs(frame.geometry.accel.bounds.high))) * 0x1p-15f;
 }
 
 const LightRun& run_of(const FrameData& frame, std::uint32_t light) {
   int r = 0;
-  while (r < frame.light_run_count && light >= frame.light_runs[r].end) ++r;
-  CHECK_LT(r, frame.light_run_count);
-  return frame.light_runs[r];
+  while (r < frame.lights.run_count && light >= frame.lights.runs[r].end) ++r;
+  CHECK_LT(r, frame.lights.run_count);
+  return frame.lights.runs[r];
 }
 
 bool lights_meet_change(const ChangeSearch& search, std::uint32_t light, const Box& ends) {
   const FrameData& frame = *search.frame;
-  return meets_change(*search.moving, shadow_beam(run_of(frame, light), frame.lights[light], ends, room_at_end(frame)));
+  return meets_change(*search.moving,
+                      shadow_beam(run_of(frame, light), frame.lights.points[light], ends, room_at_end(frame)));
 }
 
 bool virtual_lights_meet_change(const ChangeSearch& search, std::uint32_t light, const Box& ends) {
@@ -49,7 +50,7 @@ PathSuspects suspect_paths(const ChangeSearch& search, const TileHits& hits, con
   suspects.first = (!among || among->first) && meets_change(*search.moving, path_beam(hits.points, ends, room));
   suspects.any = suspects.first;
   if (!has(frame.mask, Effect::shadow)) return suspects;
-  for (std::uint32_t i = 0; i < std::min(frame.lights.count, kSuspectLights); ++i)
+  for (std::uint32_t i = 0; i < std::min(frame.lights.points.count, kSuspectLights); ++i)
     if ((!among || among->lights >> i & 1) && lights_meet_change(search, i, ends))
       suspects.lights |= std::uint64_t(1) << i;
   const std::uint32_t count = kVirtualLightSource.count(frame);
@@ -57,7 +58,7 @@ PathSuspects suspect_paths(const ChangeSearch& search, const TileHits& hits, con
     if ((!among || among->virtual_lights.has(i)) && virtual_lights_meet_change(search, i, ends))
       suspects.virtual_lights.add(i, i % kPatternPixels);
   suspects.any =
-      suspects.first || suspects.lights || suspects.virtual_lights.places || frame.lights.count > kSuspectLights;
+      suspects.first || suspects.lights || suspects.virtual_lights.places || frame.lights.points.count > kSuspectLights;
   return suspects;
 }
 

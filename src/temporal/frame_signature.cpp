@@ -29,15 +29,15 @@ FrameSignature signature_of(const FrameData& frame) {
   s.known = true;
   s.quality = frame.settings;
   s.mask = frame.mask;
-  s.camera = frame.camera;
-  s.eye_media = frame.eye_media;
+  s.camera = frame.view.camera;
+  s.eye_media = frame.view.eye_media;
   s.background = frame.scene->info.background;
   s.ambient = frame.scene->info.ambient;
-  s.radiance_bounds = frame.radiance_bounds;
-  s.left_out_max = frame.left_out_max;
+  s.radiance_bounds = frame.cut_off.radiance_bounds;
+  s.left_out_max = frame.cut_off.left_out_max;
   s.indirect = frame.indirect;
-  s.run_count = frame.light_run_count;
-  std::copy(frame.light_runs, frame.light_runs + frame.light_run_count, s.runs);
+  s.run_count = frame.lights.run_count;
+  std::copy(frame.lights.runs, frame.lights.runs + frame.lights.run_count, s.runs);
   return s;
 }
 

@@ -64,7 +64,7 @@ std::uint32_t list_seen(TileSearch* t, float t_max, std::uint8_t* pixels) {
 }  // namespace
 
 bool sees_change(const ChangeSearch& search, const PixelRect& pixels, float t_max) {
-  return search.moving->changed && meets_change(*search.moving, camera_beam(search.frame->camera, pixels, t_max));
+  return search.moving->changed && meets_change(*search.moving, camera_beam(search.frame->view.camera, pixels, t_max));
 }
 
 void find_changed_hits(TileSearch* t, float t_max) {
@@ -72,13 +72,13 @@ void find_changed_hits(TileSearch* t, float t_max) {
   Hit found[kPacketMax];
   std::uint8_t seen[kPacketMax];
   const std::uint32_t count = list_seen(t, t_max, seen);
-  if (t->frame.camera.orthographic) {
+  if (t->frame.view.camera.orthographic) {
     for (std::uint32_t k = 0; k < count; ++k)
       kBvhAccel.closest(t->search.moving->now, sample_ray(t->frame, p, seen[k], t->offset), nullptr, &found[k],
                         t->stats);
   } else if (count > 0) {
     RayPacket packet;
-    packet.origin = t->frame.camera.eye, packet.t_max = kInfinity, packet.count = count;
+    packet.origin = t->frame.view.camera.eye, packet.t_max = kInfinity, packet.count = count;
     for (std::uint32_t k = 0; k < count; ++k) {
       Vec3 direction = sample_ray(t->frame, p, seen[k], t->offset).direction;
       for (int axis = 0; axis < 3; ++axis) packet.direction[axis][k] = direction[axis];

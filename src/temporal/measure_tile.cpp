@@ -11,7 +11,8 @@ namespace {
 float lift_bound(const FrameData& frame, const Triangle& t, const Vec3& point, const float* weight) {
   float lift = 0;
   for (std::uint32_t i = 0; i < 3; ++i)
-    lift += std::fabs(weight[i] * dot(point - frame.positions[t.vertex(i)], frame.normals[t.vertex(i)]));
+    lift +=
+        std::fabs(weight[i] * dot(point - frame.geometry.positions[t.vertex(i)], frame.geometry.normals[t.vertex(i)]));
   return lift * 1.02f;  // normals may be 1 % too long (scene/validate.cpp)
 }
 
@@ -38,12 +39,12 @@ TileHits measure_tile(const FrameData& frame, const Hit* first_hits, std::uint32
         const float weight[3] = {1 - hit.u - hit.v, hit.u, hit.v};
         Vec3 point = {0, 0, 0};
         for (std::uint32_t i = 0; i < 3; ++i) {
-          point += frame.positions[t.vertex(i)] * weight[i];
-          reach = std::max(reach, max_component(abs(frame.positions[t.vertex(i)])));
+          point += frame.geometry.positions[t.vertex(i)] * weight[i];
+          reach = std::max(reach, max_component(abs(frame.geometry.positions[t.vertex(i)])));
         }
         tile.t_max = std::max(tile.t_max, hit.t);
         tile.points = merge(tile.points, point);
-        if (frame.normals.count) tile.room = std::max(tile.room, lift_bound(frame, t, point, weight));
+        if (frame.geometry.normals.count) tile.room = std::max(tile.room, lift_bound(frame, t, point, weight));
       }
     }
   }

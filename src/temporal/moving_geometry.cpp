@@ -112,7 +112,7 @@ MovingGeometry make_moving_geometry(const FrameData& frame, Arena* keep, Arena* 
   m.vertex_changed = arena_array_zeroed<std::uint32_t>(keep, scene.positions.count / 32 + 1);
   m.positions = arena_array_zeroed<Vec3>(keep, n.vertices);
   if (scene.normals.count) m.normals = arena_array_zeroed<Vec3>(keep, n.vertices);
-  m.now.positions = frame.positions;
+  m.now.positions = frame.geometry.positions;
   m.now.triangles = m.triangles;
   kBvhAccel.build(&m.now, keep, scratch);
   m.last = m.now;
@@ -129,10 +129,11 @@ MovingGeometry make_moving_geometry(const FrameData& frame, Arena* keep, Arena* 
 void follow_geometry(const FrameData& frame, MovingGeometry* m) {
   m->changed = false;
   if (m->triangles.empty()) return;
-  CHECK_EQ(frame.positions.count, frame.scene->positions.count);
+  CHECK_EQ(frame.geometry.positions.count, frame.scene->positions.count);
   std::memset(m->vertex_changed.data, 0, m->vertex_changed.bytes());
-  follow(*m, frame.positions, m->positions, m->vertex_changed.data);
-  if (m->normals.count && frame.normals.count) follow(*m, frame.normals, m->normals, m->vertex_changed.data);
+  follow(*m, frame.geometry.positions, m->positions, m->vertex_changed.data);
+  if (m->normals.count && frame.geometry.normals.count)
+    follow(*m, frame.geometry.normals, m->normals, m->vertex_changed.data);
   for (std::uint32_t i = 0; i < m->triangles.count; ++i) {
     bool changed = false;
     for (std::uint32_t v : m->triangles[i].vertices()) changed |= is_in(m->vertex_changed.data, v);
@@ -142,7 +143,7 @@ void follow_geometry(const FrameData& frame, MovingGeometry* m) {
   if (!m->changed) return;  // `last` is not read
   std::swap(m->last, m->now);
   std::swap(m->data[0], m->data[1]);
-  m->now.positions = frame.positions;
+  m->now.positions = frame.geometry.positions;
   kBvhAccel.refit(&m->now, m->data[0]);
   mark_nodes(m);
 }

@@ -21,8 +21,8 @@ std::uint8_t marks_of(const Recoloring& r, const Triangle& t) { return r.marks[t
 
 Box box_of(const FrameData& frame, const Triangle& t) {
   Box box = empty_box();
-  if (!has_valid_vertices(frame.positions, t)) return box;
-  for (std::uint32_t v : t.vertices()) box = merge(box, frame.positions[v]);
+  if (!has_valid_vertices(frame.geometry.positions, t)) return box;
+  for (std::uint32_t v : t.vertices()) box = merge(box, frame.geometry.positions[v]);
   return box;
 }
 
@@ -66,7 +66,7 @@ bool meets_triangle(const Recoloring& r, const FrameData& frame, const BeamHull&
   std::uint32_t ids[kBvhLeafSize], count = 0;
   TriangleBlock block;
   auto meets = [&] {
-    kBlockLeaves.fill(frame.positions, frame.scene->triangles, ids, count, &block);
+    kBlockLeaves.fill(frame.geometry.positions, frame.scene->triangles, ids, count, &block);
     return may_meet(hull, block, (1u << count) - 1) != 0;
   };
   for (std::uint32_t i = begin; i < end; ++i) {
@@ -129,8 +129,9 @@ void for_each_hit(const TileOfPixels& tile, Visit visit) {
 Surface surface_at(const FrameData& frame, std::uint32_t x, std::uint32_t y, std::uint32_t sample, const Hit& hit) {
   const Vec2 offset = sample_offset(sample, frame.settings.samples_per_pixel);
   Surface s;
-  frame.first_surface(
-      frame, camera_ray(frame.camera, static_cast<float>(x) + offset.x, static_cast<float>(y) + offset.y), hit, &s);
+  frame.kernels.first_surface(
+      frame, camera_ray(frame.view.camera, static_cast<float>(x) + offset.x, static_cast<float>(y) + offset.y), hit,
+      &s);
   return s;
 }
 
@@ -146,7 +147,7 @@ void find_shown(TileOfPixels* tile) {
 
 // Finds pixels whose camera rays pass different holes before they hit something.
 void find_seen_through(TileOfPixels* tile, float t_max) {
-  const CameraRays& camera = tile->frame.camera;
+  const CameraRays& camera = tile->frame.view.camera;
   const PixelRect all = {tile->column, tile->row, kChangeTileSide, kChangeTileSide};
   if (!is_stopped_otherwise(tile->r, tile->frame, camera_beam(camera, all, t_max))) return;
   for_each_hit(*tile, [&](std::uint32_t x, std::uint32_t y, std::uint32_t, const Hit& hit, std::uint64_t bit) {
@@ -160,10 +161,10 @@ void find_seen_through(TileOfPixels* tile, float t_max) {
 void find_shaded(TileOfPixels* tile, const TileHits& hits) {
   const FrameData& frame = tile->frame;
   if (!has(frame.mask, Effect::shadow)) return;
-  for (int i = 0; i < frame.light_run_count; ++i) {
-    const LightRun& run = frame.light_runs[i];
+  for (int i = 0; i < frame.lights.run_count; ++i) {
+    const LightRun& run = frame.lights.runs[i];
     for (std::uint32_t k = run.begin; k < run.end; ++k) {
-      const LightPoint& light = frame.lights[k];
+      const LightPoint& light = frame.lights.points[k];
       if (!is_stopped_otherwise(tile->r, frame, shadow_beam(run, light, hits.points, hits.room))) continue;
       for_each_hit(*tile,
                    [&](std::uint32_t x, std::uint32_t y, std::uint32_t sample, const Hit& hit, std::uint64_t bit) {
@@ -246,8 +247,8 @@ void take_marks(Recoloring* r) {
 const char* follow_recoloring(const FrameData& frame, const MovingGeometry& moving, Recoloring* r) {
   const Scene& scene = *frame.scene;
   CHECK_EQ(scene.materials.count, r->marks.count);
-  for (std::uint32_t i = 0; i < frame.eye_media.depth; ++i)
-    if (r->marks[frame.eye_media.material[i]] & kInsideMark) return "the body around the camera was recoloured";
+  for (std::uint32_t i = 0; i < frame.view.eye_media.depth; ++i)
+    if (r->marks[frame.view.eye_media.material[i]] & kInsideMark) return "the body around the camera was recoloured";
   r->group_count = 0, r->bounds = empty_box();
   r->has_holes = false;
   bool passes = false;

@@ -68,7 +68,7 @@ bool may_shade(const ChangeSearch& search, const TileHits& hits, const LightRun&
 }
 
 void find_lit_by(TileSearch* t, const LightRun& run, std::uint32_t light) {
-  const LightPoint &is = t->frame.lights[light], &was = t->search.last.lights[light];
+  const LightPoint &is = t->frame.lights.points[light], &was = t->search.last.lights[light];
   for (std::uint32_t k = 0; k < t->receiver_count; ++k) {
     if (t->changed & bit_of(t->pixels, t->receiver[k])) continue;
     const Surface& s = surface_of(t, k);
@@ -83,12 +83,12 @@ void find_changed_shadows(TileSearch* t, const LightRun& run, std::uint32_t ligh
   const FrameData& frame = t->frame;
   const MovingGeometry& m = *t->search.moving;
   ShadowRays s;
-  list_shadow_rays(t, run, frame.lights[light], room, known, &s);
+  list_shadow_rays(t, run, frame.lights.points[light], room, known, &s);
   if (s.rays.count == 0) return;
-  ShadowContext shadow = {&frame, emitter_of(frame.lights[light])};
-  bool filtered = frame.filter_every_shadow || shadow.emitter != nullptr;
-  bool clear = frame.accept_clear != nullptr;  // a transparent surface tints: anything in the way counts
-  const ShadowFilters filters(m, {filtered ? frame.accept_opaque : nullptr, &shadow});
+  ShadowContext shadow = {&frame, emitter_of(frame.lights.points[light])};
+  bool filtered = frame.filters.every_shadow || shadow.emitter != nullptr;
+  bool clear = frame.filters.accept_clear != nullptr;  // a transparent surface tints: anything in the way counts
+  const ShadowFilters filters(m, {filtered ? frame.filters.accept_opaque : nullptr, &shadow});
   const HitFilter* filter = filtered && !clear ? &filters.moving : nullptr;
 
   std::uint64_t fresh = 0, was = 0;
@@ -100,7 +100,7 @@ void find_changed_shadows(TileSearch* t, const LightRun& run, std::uint32_t ligh
   }
   auto idle_of = [&](std::uint64_t which) {
     t->counts->static_rays += static_cast<std::uint64_t>(__builtin_popcountll(which));
-    return blocked_among(*frame.first_rays, frame.accel, s, which, &filters.other, t->stats);
+    return blocked_among(*frame.geometry.first_rays, frame.geometry.accel, s, which, &filters.other, t->stats);
   };
   const std::uint64_t all = ~std::uint64_t(0) >> (kPacketMax - s.rays.count);
   std::uint64_t idle = is_kept ? idle_of(fresh) : 0;

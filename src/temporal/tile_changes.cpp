@@ -43,7 +43,7 @@ void find_receivers(TileSearch* t) {
 bool has_light_changed(const ChangeSearch& search, const LightRun& run, std::uint32_t light) {
   const FrameData& frame = *search.frame;
   if (!search.lights_changed) return false;
-  if (std::memcmp(&search.last.lights[light], &frame.lights[light], sizeof(LightPoint)) != 0) return true;
+  if (std::memcmp(&search.last.lights[light], &frame.lights.points[light], sizeof(LightPoint)) != 0) return true;
   if (!run.polygons) return false;
   const std::uint32_t lamp = (light - run.begin) / frame.settings.points_per_area_light;
   return std::memcmp(&search.last.light_polygons[lamp], &run.polygons[lamp], sizeof(LightPolygon)) != 0;
@@ -56,12 +56,12 @@ void for_each_suspect(const ChangeSearch& search, const TileHits& hits, std::uin
   const FrameData& frame = *search.frame;
   if (is_empty(hits.points)) return;
   const bool casts = has(frame.mask, Effect::shadow) && search.moving->changed;
-  for (int r = 0; r < frame.light_run_count; ++r) {
-    const LightRun& run = frame.light_runs[r];
+  for (int r = 0; r < frame.lights.run_count; ++r) {
+    const LightRun& run = frame.lights.runs[r];
     for (std::uint32_t i = run.begin; i < run.end; ++i) {
       if (i < kSuspectLights && !(suspects >> i & 1)) continue;
       const bool has_changed = has_light_changed(search, run, i);
-      if (!has_changed && (!casts || !may_shade(search, hits, run, frame.lights[i]))) continue;
+      if (!has_changed && (!casts || !may_shade(search, hits, run, frame.lights.points[i]))) continue;
       if (!visit(run, i, has_changed)) return;
     }
   }
@@ -129,8 +129,8 @@ const Surface& surface_of(TileSearch* t, std::uint32_t k) {
   if (t->has_surface >> k & 1) return t->surface[k];
   t->has_surface |= std::uint64_t(1) << k;
   const std::uint32_t i = t->receiver[k];
-  t->frame.first_surface(t->frame, sample_ray(t->frame, t->pixels, i, t->offset),
-                         t->hits[index_of(t->frame.settings, t->pixels, i)], &t->surface[k]);
+  t->frame.kernels.first_surface(t->frame, sample_ray(t->frame, t->pixels, i, t->offset),
+                                 t->hits[index_of(t->frame.settings, t->pixels, i)], &t->surface[k]);
   return t->surface[k];
 }
 

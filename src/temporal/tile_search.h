@@ -20,15 +20,15 @@ inline std::size_t index_of(const Settings& settings, const TilePixels& p, std::
 }
 
 inline Ray sample_ray(const FrameData& frame, const TilePixels& p, std::uint32_t i, const Vec2& offset) {
-  return camera_ray(frame.camera, static_cast<float>(p.column + p.x[i]) + offset.x,
+  return camera_ray(frame.view.camera, static_cast<float>(p.column + p.x[i]) + offset.x,
                     static_cast<float>(p.row + p.y[i]) + offset.y);
 }
 
 // Position of a hit.
 inline Vec3 point_of(const FrameData& frame, const Hit& hit) {
   const Triangle& t = frame.scene->triangles[hit.triangle];
-  return frame.positions[t.vertex(0)] * (1 - hit.u - hit.v) + frame.positions[t.vertex(1)] * hit.u +
-         frame.positions[t.vertex(2)] * hit.v;
+  return frame.geometry.positions[t.vertex(0)] * (1 - hit.u - hit.v) + frame.geometry.positions[t.vertex(1)] * hit.u +
+         frame.geometry.positions[t.vertex(2)] * hit.v;
 }
 
 struct PixelRect {

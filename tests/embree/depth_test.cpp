@@ -72,7 +72,8 @@ double agreement(const std::string& name) {
   std::uint32_t agree = 0;
   for (std::uint32_t row = 0; row < settings.height; ++row) {
     for (std::uint32_t column = 0; column < settings.width; ++column) {
-      Ray ray = camera_ray(renderer->frame.camera, static_cast<float>(column) + 0.5f, static_cast<float>(row) + 0.5f);
+      Ray ray =
+          camera_ray(renderer->frame.view.camera, static_cast<float>(column) + 0.5f, static_cast<float>(row) + 0.5f);
       float theirs = embree.cast(ray),
             ours = renderer->image[static_cast<std::size_t>(row) * settings.width + column].x;
       agree += std::fabs(ours - theirs) <= 1e-4f * theirs;

@@ -140,9 +140,9 @@ TEST_CASE("instant_radiosity_does_not_depend_on_spans") {
     CHECK(differ(by.rows, 28) == 0);
     CHECK(differ(by.odd, 5) == 0);
     CHECK(differ(by.pixels, 7) == 0);
-    renderer.frame.ray_by_ray = true;
+    renderer.frame.geometry.ray_by_ray = true;
     CHECK(differ(by.rows, 28) == 0);
-    renderer.frame.ray_by_ray = false;
+    renderer.frame.geometry.ray_by_ray = false;
     for (const AccelInfo* info : kAccelList) {
       CAPTURE(info->name);
       std::unique_ptr<TestRenderer> other = make_renderer(room.scene, settings, info);
@@ -292,7 +292,7 @@ TEST_CASE("instant_radiosity_finds_light_that_missed_the_scene_at_first") {
 TEST_CASE("instant_radiosity_keeps_lights_as_the_bounds_change") {
   std::unique_ptr<TestRenderer> first = rendered(RoomWithTurningBoxes(true, 0, 1.7f).scene, instant_settings(64)),
                                 second = rendered(RoomWithTurningBoxes(true, 0, 1.71f).scene, instant_settings(64));
-  REQUIRE(first->renderer.frame.accel.bounds.high.y != second->renderer.frame.accel.bounds.high.y);
+  REQUIRE(first->renderer.frame.geometry.accel.bounds.high.y != second->renderer.frame.geometry.accel.bounds.high.y);
   const VirtualLights &a = lights_of(*first), &b = lights_of(*second);
   CHECK(lights_kept(a, b) > a.count / 2);
 }

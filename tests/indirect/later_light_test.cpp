@@ -56,10 +56,10 @@ Settings instant(std::uint32_t lights, float tolerance) {
 Surface surface_along(const FrameData& frame, const Ray& ray) {
   Hit hit;
   TraceStats stats;
-  frame.accel_info->closest(frame.accel, ray, nullptr, &hit, &stats);
+  frame.geometry.accel_info->closest(frame.geometry.accel, ray, nullptr, &hit, &stats);
   REQUIRE(hit.triangle != kNoTriangle);
   Surface s;
-  frame.surface(frame, ray, hit, &s);
+  frame.kernels.surface(frame, ray, hit, &s);
   return s;
 }
 
@@ -71,8 +71,8 @@ Vec3 visible_light(const FrameData& frame, const Surface& s) {
   TraceStats stats;
   for (std::uint32_t i = 0; i < lights.count; ++i)
     if (arrives(lights.light[i], lights.geometry_max, s, &light) &&
-        !frame.accel_info->occluded(frame.accel, {origin, lights.light[i].position - origin, kVirtualRayEnd}, nullptr,
-                                    &stats))
+        !frame.geometry.accel_info->occluded(
+            frame.geometry.accel, {origin, lights.light[i].position - origin, kVirtualRayEnd}, nullptr, &stats))
       sum += light;
   return s.diffuse * (sum * (1 / kPiF));
 }
@@ -178,7 +178,7 @@ TEST_CASE("later_light_is_that_of_surfaces_behind_first_hits") {
     const Span row = {14, 0, 40};
     std::vector<Vec3> pictures[2];
     for (int k = 0; k < 2; ++k) {
-      renderer.frame.add_later_light = k ? add_one : nullptr;
+      renderer.frame.kernels.add_later_light = k ? add_one : nullptr;
       weight_max = 0;
       Tracer tracer = make_tracer(renderer.frame);
       trace_spans(&tracer, &row, 1, Aov::none, image.data);

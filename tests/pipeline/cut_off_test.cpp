@@ -13,7 +13,7 @@ using namespace pocketray;
 
 namespace {
 
-struct CutOff {
+struct Comparison {
   double difference_max = 0;  // linear, in excess of the rounding of the sums
   double left_out_max = 0;
   double share_max = 0;  // of what may be left out of a sample, which grows with its light where paths branch
@@ -27,8 +27,8 @@ std::uint64_t all_rays(const Tracer& t) {
   return sum;
 }
 
-CutOff compare_cut_off(const Scene& scene, Settings settings) {
-  CutOff c;
+Comparison compare_cut_off(const Scene& scene, Settings settings) {
+  Comparison c;
   settings.cut_off_levels = 0.5f;
   auto with = make_renderer(scene, settings);
   settings.cut_off_levels = 0;
@@ -55,7 +55,7 @@ CutOff compare_cut_off(const Scene& scene, Settings settings) {
 // Without the cut-off, the number of rays grows exponentially with the depth where coats have normals of their own.
 bool has_coats(std::uint32_t features) { return (features & bit(Feature::clear_coat)) != 0; }
 
-void check_bounded(const CutOff& c) {
+void check_bounded(const Comparison& c) {
   CHECK(c.difference_max <= c.left_out_max);
   CHECK(c.share_max <= 1.00001);  // rounding of the sums
   CHECK(c.level_difference_max <= 1);
@@ -71,7 +71,7 @@ TEST_CASE("cut_off_is_bounded_on_cornell") {
   auto built = build_builtin("cornell");
   Settings settings;
   settings.width = effort_side(96), settings.height = effort_side(72);
-  CutOff c = compare_cut_off(built->scene, settings);
+  Comparison c = compare_cut_off(built->scene, settings);
   check_bounded(c);
   CHECK(c.rays_left_out > 0);
 }
@@ -91,7 +91,7 @@ TEST_CASE("cut_off_is_bounded_on_generated_scenes") {
       generated->scene.info.exposure = seed % 2 ? 0.02f : 1.0f;
       Settings settings = settings_for(features, effort_side(48), effort_side(36));
       settings.ray_depth = has_coats(features) ? 5 : 16;
-      CutOff c = compare_cut_off(generated->scene, settings);
+      Comparison c = compare_cut_off(generated->scene, settings);
       CAPTURE(features);
       CAPTURE(seed);
       check_bounded(c);
@@ -110,7 +110,7 @@ TEST_CASE("radiance_bound_bounds_every_ray") {
     Settings settings = settings_for(features, 8, 6);
     settings.cut_off_levels = 0;
     auto deepest = make_renderer(generated->scene, settings);
-    const RadianceBounds bounds = deepest->renderer.frame.radiance_bounds;
+    const RadianceBounds bounds = deepest->renderer.frame.cut_off.radiance_bounds;
     settings.ray_depth = static_cast<std::uint32_t>(seed % 9);
     const float bound = bounds.after[settings.ray_depth];
     REQUIRE(std::isfinite(bound));
@@ -148,7 +148,7 @@ TEST_CASE("radiance_bound_is_reached_by_a_mirror_before_an_emitter") {
   settings.cut_off_levels = 0;
   auto test = make_renderer(s.scene, settings);
   float seen = trace_ray(test->renderer, {0, 0, 0}, {0, 0, -1}).x;
-  const float bound = test->renderer.frame.radiance_bounds.after[settings.ray_depth];
+  const float bound = test->renderer.frame.cut_off.radiance_bounds.after[settings.ray_depth];
   CHECK(seen <= bound);
   CHECK(bound <=
         4 * 1.13f);  // 2/(1 − ½), all surfaces assumed as strong as the strongest, rounded up by at most an eighth

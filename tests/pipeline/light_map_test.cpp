@@ -60,7 +60,7 @@ std::unique_ptr<OwnedMap> map_of(Renderer* light, Renderer* device, const std::v
     owned->lights[i] = light->image[row * light->settings.width + column];
     CHECK((owned->lights[i].x < 0) == (owned->surfaces[i].triangle == kNone));
   }
-  owned->map = {grid, device->frame.camera, seconds, owned->surfaces.data(), owned->lights.data()};
+  owned->map = {grid, device->frame.view.camera, seconds, owned->surfaces.data(), owned->lights.data()};
   return owned;
 }
 

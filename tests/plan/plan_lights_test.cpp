@@ -22,7 +22,7 @@ std::vector<LightPoint> points_of(const GeneratedScene& s, std::uint32_t n) {
   Settings settings = settings_for(0, 4, 3);
   settings.points_per_area_light = n;
   auto test = make_renderer(s.scene, settings);
-  const Array<const LightPoint>& lights = test->renderer.frame.lights;
+  const Array<const LightPoint>& lights = test->renderer.frame.lights.points;
   return std::vector<LightPoint>(lights.begin(), lights.end());
 }
 

@@ -74,7 +74,7 @@ BandsRig::BandsRig(bool total) : total_(total), cube_(build_builtin("cube")) {
   auto test = make_renderer(cube_->scene, settings_of(Reconstruction::bicubic));
   REQUIRE(begin_frame(&test->renderer, {0}).ok);
   for (std::uint32_t y = 0; y < kBandsHeight; ++y)
-    for (std::uint32_t x = 0; x < kBandsWidth; ++x) walls_.push_back(wall_at(test->renderer.frame.camera, x, y));
+    for (std::uint32_t x = 0; x < kBandsWidth; ++x) walls_.push_back(wall_at(test->renderer.frame.view.camera, x, y));
 }
 
 // As solve_radiosity(), but with direct light if `total_`, and at the corners of triangles if these are wanted.

@@ -109,7 +109,7 @@ TEST_CASE("reference_coat_mirrors_by_its_own_normal") {
     check_equal(estimate(t, transport, v * 3.0, -v, effort(5000)), expected);
   Camera camera;
   camera.eye = to_float(v * 3.0), camera.target = {0, 0, 0}, camera.up = {0, 0, 1};
-  REQUIRE(make_camera_rays(camera, 1, 1, &t.renderer->renderer.frame.camera).ok);
+  REQUIRE(make_camera_rays(camera, 1, 1, &t.renderer->renderer.frame.view.camera).ok);
   Vec3d picture;
   trace_as_rendered(t.reference, 0, 1, &picture);
   CHECK(picture.y == doctest::Approx(expected).epsilon(1e-5));

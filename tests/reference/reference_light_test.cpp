@@ -354,7 +354,7 @@ TEST_CASE("reference_pictures_of_seeds_agree") {
     CHECK(parts == whole);
     double mean = sum / kSeedCount, error2 = (squares / kSeedCount - mean * mean) / (kSeedCount - 1);
     Rng rng = make_rng(99);
-    const CameraRays& camera = t.renderer->renderer.frame.camera;
+    const CameraRays& camera = t.renderer->renderer.frame.view.camera;
     int count = effort(20000);
     double independent = 0, independent_squares = 0;
     for (int i = 0; i < count; ++i) {

@@ -21,7 +21,7 @@ namespace {
 double rendered_along(TestReference* t, const Vec3d& eye, const Vec3d& direction) {
   Camera camera;
   camera.eye = to_float(eye), camera.target = to_float(eye + direction), camera.up = {0, 1, 0};
-  REQUIRE(make_camera_rays(camera, 1, 1, &t->renderer->renderer.frame.camera).ok);
+  REQUIRE(make_camera_rays(camera, 1, 1, &t->renderer->renderer.frame.view.camera).ok);
   Vec3d picture;
   trace_as_rendered(t->reference, 0, 1, &picture);
   return picture.y;
@@ -197,12 +197,12 @@ TEST_CASE("reference_model_is_the_renderers_limit") {
       // Small objects as often as large ones: towards a random triangle.
       const Triangle& at = s->scene.triangles[next_u32(&rng) % s->scene.triangles.count];
       float u = 0.5f * next_float(&rng), v = 0.5f * next_float(&rng);
-      Vec3 point = frame.positions[at.vertex(0)] * (1 - u - v) + frame.positions[at.vertex(1)] * u +
-                   frame.positions[at.vertex(2)] * v;
-      Vec3 direction = normalize(point - frame.camera.eye);
-      double rendered = static_cast<double>(trace_ray(t.renderer->renderer, frame.camera.eye, direction).y);
-      Estimate e = estimate(t, Transport::model, to_double(frame.camera.eye), to_double(direction), by_chance ? 500 : 1,
-                            100 + i, kRayDepthMax);
+      Vec3 point = frame.geometry.positions[at.vertex(0)] * (1 - u - v) + frame.geometry.positions[at.vertex(1)] * u +
+                   frame.geometry.positions[at.vertex(2)] * v;
+      Vec3 direction = normalize(point - frame.view.camera.eye);
+      double rendered = static_cast<double>(trace_ray(t.renderer->renderer, frame.view.camera.eye, direction).y);
+      Estimate e = estimate(t, Transport::model, to_double(frame.view.camera.eye), to_double(direction),
+                            by_chance ? 500 : 1, 100 + i, kRayDepthMax);
       double off = std::fabs(e.mean - rendered);
       unequal += off > 5 * e.error + 1e-4 * rendered;
       if (off > 5 * e.error + 1e-4 * rendered) worst = std::fmax(worst, off);

@@ -80,7 +80,7 @@ TEST_CASE("radiance_bounds_hold_in_nested_glass") {
         const Vec3 from = {between(-4.5f, 4.5f), between(-1.2f, 5.2f), between(-3.2f, 4.2f)};
         const Vec3 to = {between(-4, 4), between(-1, 5), between(-3, 4)};
         CHECK(max_component(trace_ray(t->renderer, from, normalize(to - from))) <=
-              t->renderer.frame.radiance_bounds.after[depth]);
+              t->renderer.frame.cut_off.radiance_bounds.after[depth]);
       }
     }
 }
@@ -90,7 +90,7 @@ TEST_CASE("radiance_bounds_hold_in_nested_glass") {
 TEST_CASE("radiance_bound_does_not_grow_in_glass") {
   auto s = make_nest(kNests[3]);
   auto t = make_renderer(s->scene, nest_settings(16, 0));
-  const RadianceBounds& bounds = t->renderer.frame.radiance_bounds;
+  const RadianceBounds& bounds = t->renderer.frame.cut_off.radiance_bounds;
   for (std::uint32_t i = 1; i <= kRayDepthMax; ++i) CHECK(bounds.after[i] == bounds.after[1]);
   CHECK(bounds.after[0] >= 20);
   CHECK(bounds.after[16] <= 23);  // the lamp, rounded up by at most an eighth

@@ -344,7 +344,7 @@ TEST_CASE("clear_coat_is_traced_where_it_is_not_smooth") {
     frame.selection = {0.1f, 1, 0.05f};
     Surface surface;
     const Ray ray = {{0.1f, 0.2f, 3}, {0, 0, -1}, 10};
-    frame.surface(frame, ray, {3, 0.25f, 0.25f, 0}, &surface);
+    frame.kernels.surface(frame, ray, {3, 0.25f, 0.25f, 0}, &surface);
     CellCorner corner = {{1, 1, 1}, surface.diffuse, surface.glow, surface.normal, surface.material, true, true};
     CAPTURE(kind);
     CHECK(has_smooth_light(frame, surface) == (kind != 1));
@@ -362,7 +362,7 @@ TEST_CASE("clear_coat_stays_within_the_radiance_bound") {
       s.scene.materials[0].mirror = {0.1f, 0.1f, 0.1f};
       s.scene.scene.info.ambient = {0.1f, 0.1f, 0.1f};
       auto t = ray_renderer(&s.scene, 3);
-      const float bound = t->renderer.frame.radiance_bounds.after[3];
+      const float bound = t->renderer.frame.cut_off.radiance_bounds.after[3];
       float most = 0;
       for (int i = 0; i < 200; ++i) {
         const double low = 0.02 + 0.005 * i;

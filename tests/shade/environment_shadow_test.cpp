@@ -187,7 +187,7 @@ TEST_CASE("environment_shadow_does_not_depend_on_how_a_picture_is_divided") {
     CHECK(differ(by.rows, 8) == 0);
     CHECK(differ(by.odd, 5) == 0);
     CHECK(differ(by.pixels, 7) == 0);
-    t->renderer.frame.ray_by_ray = true;
+    t->renderer.frame.geometry.ray_by_ray = true;
     CHECK(differ(by.rows, 8) == 0);
     settings.threads = 3;
     for (const AccelInfo* info : kAccelList) {

@@ -119,7 +119,7 @@ TEST_CASE("environment_is_within_the_bound_of_radiance") {
     CHECK(total_counts(cut->renderer).rays_left_out > 0);
     const float most = total_counts(cut->renderer).left_out_max;
     CHECK(total_counts(cut->renderer).left_out_share_max <= 1.00001f);
-    const float bound = whole->renderer.frame.radiance_bounds.after[settings.ray_depth];
+    const float bound = whole->renderer.frame.cut_off.radiance_bounds.after[settings.ray_depth];
     for (std::uint32_t i = 0; i < settings.width * settings.height; ++i) {
       const Vec3 a = whole->renderer.image[i], b = cut->renderer.image[i];
       CHECK(max_component(a) <= bound);

@@ -243,7 +243,7 @@ TEST_CASE("hard_23_terminator_of_a_coarse_smooth_sphere") {
       Hit hit;
       t->renderer.accel.info->closest(t->renderer.accel.built, {eye, -direction, 9}, nullptr, &hit, nullptr);
       Surface surface;
-      t->renderer.frame.surface(t->renderer.frame, {eye, -direction, 9}, hit, &surface);
+      t->renderer.frame.kernels.surface(t->renderer.frame, {eye, -direction, 9}, hit, &surface);
       float facing = dot(surface.normal, pole);
       float radiance = look(*t, eye, {0, 0, 0}).x;
       bool lit = radiance > 0;

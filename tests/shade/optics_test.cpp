@@ -145,7 +145,7 @@ TEST_CASE("hard_35_surroundings_complete_the_series") {
       auto t = ray_renderer(&s, depth, 1);
       double seen = sum + std::pow(double(rho), depth + 1) * double(max_component(around));
       CHECK(look(*t, {0, 0, 0}, {0.03f, 0.02f, -1}).x == doctest::Approx(seen).epsilon(1e-5));
-      CHECK(double(t->renderer.frame.radiance_bounds.after[depth]) >= seen * (1 - 1e-6));
+      CHECK(double(t->renderer.frame.cut_off.radiance_bounds.after[depth]) >= seen * (1 - 1e-6));
     }
   }
 }

@@ -139,7 +139,7 @@ TEST_CASE("point_groups_divide_the_points_of_each_light") {
     s.bind();
     auto test = make_renderer(s.scene, settings_of(n, 2, 2));
     REQUIRE(render_frame(&test->renderer, 0).ok);
-    const PointGroups& groups = test->renderer.frame.point_groups;
+    const PointGroups& groups = test->renderer.frame.lights.point_groups;
     REQUIRE(groups.groups.count == 2 * n);
     REQUIRE(groups.points_of_light == n);
     for (std::uint32_t first : {0u, n}) {
@@ -175,7 +175,7 @@ TEST_CASE("point_groups_are_left_out_where_they_save_nothing") {
   auto group_count = [&](Settings settings) {
     auto test = make_renderer(s->scene, settings);
     REQUIRE(render_frame(&test->renderer, 0).ok);
-    return test->renderer.frame.point_groups.groups.count;
+    return test->renderer.frame.lights.point_groups.groups.count;
   };
   CHECK(group_count(settings_of(9)) == 9);
   CHECK(group_count(settings_of(kUndividedMax)) == 0);

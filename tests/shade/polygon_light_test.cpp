@@ -348,8 +348,8 @@ TEST_CASE("polygon_light_does_not_light_its_lamp") {
   CHECK(seen > 200);
 }
 
-// Goal: lamps that a polygon describes get one. Method: outlines of a square, of several, of an L and of a triangle; each
-// plane of a lamp that is bent or has two sides; none for lamps in parts, with textures, or of many corners.
+// Goal: lamps that a polygon describes get one. Method: outlines of a square, of several, of an L and of a triangle;
+// each plane of a lamp that is bent or has two sides; none for lamps in parts, with textures, or of many corners.
 TEST_CASE("light_polygons_of_flat_lamps") {
   auto corners_of = [](auto build) {
     GeneratedScene s;
@@ -360,7 +360,7 @@ TEST_CASE("light_polygons_of_flat_lamps") {
     s.bind();
     auto test = make_renderer(s.scene, settings_of(4));
     REQUIRE(render_frame(&test->renderer, 0).ok);
-    const Array<const LightPolygon>& polygons = test->renderer.frame.light_polygons;
+    const Array<const LightPolygon>& polygons = test->renderer.frame.lights.polygons;
     std::uint32_t corners = 0;
     for (const LightPolygon& polygon : polygons) corners += polygon.corner_count;
     return corners;

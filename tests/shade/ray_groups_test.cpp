@@ -55,7 +55,7 @@ struct Gathering {
   float brightness[kInterleavedSourceMax];
 
   explicit Gathering(std::uint32_t seed) {
-    rays.occluded = hides, frame.first_rays = &rays;
+    rays.occluded = hides, frame.geometry.first_rays = &rays;
     surface.diffuse = {1, 1, 1};
     Rng rng = make_rng(seed);
     for (float& b : brightness) {

@@ -63,7 +63,7 @@ int rays_that_escape(const Room& room, Rng* rng, int ray_count) {
       continue;
     }
     Surface surface;
-    renderer.frame.surface(renderer.frame, ray, hit, &surface);
+    renderer.frame.kernels.surface(renderer.frame, ray, hit, &surface);
     Vec3 out = random_direction(rng);
     if (dot(out, surface.geometric) < 0) out = -out;
     ray = {safe_origin(surface, 1), out, __builtin_inff()};

@@ -70,7 +70,7 @@ inline TracedPicture trace_picture(const Scene& scene, const Settings& settings,
   REQUIRE(render_frame(&test->renderer, 0).ok);
   FrameData frame = test->renderer.frame;
   make_filters(&frame);
-  if (!in_tiles) frame.find_shadows = nullptr;
+  if (!in_tiles) frame.kernels.find_shadows = nullptr;
   std::vector<Span> spans;
   for (std::uint32_t row = 0; row < settings.height; ++row)
     spans.push_back({static_cast<std::uint16_t>(row), 0, static_cast<std::uint16_t>(settings.width)});

@@ -137,7 +137,7 @@ TEST_CASE("source_selection_is_independent_of_tiles_and_threads") {
   CHECK(same_picture(trace(s->scene, settings, true).picture, expected));
   settings.threads = 1;
   auto test = make_renderer(s->scene, settings);
-  test->renderer.frame.ray_by_ray = false;
+  test->renderer.frame.geometry.ray_by_ray = false;
   Tracer tracer = test->renderer.tracers[0];
   Picture single(expected.size());
   for (std::uint16_t row = 0; row < kHeight; ++row)

@@ -30,7 +30,7 @@ int self_hits(GeneratedScene* s, int spawns) {
     if (i % 8 == 5) hit.v = 1 - hit.u;
     Vec3 incoming = random_vec3(&rng), outgoing = normalize(random_vec3(&rng));
     Surface surface;
-    frame.surface(frame, {{0, 0, 0}, incoming, 1}, hit, &surface);
+    frame.kernels.surface(frame, {{0, 0, 0}, incoming, 1}, hit, &surface);
     float side = i % 2 ? 1.0f : -1.0f;
     float along = dot(outgoing, surface.geometric) * side;
     if (i % 4 == 1) outgoing = normalize(outgoing - surface.geometric * (along * side * 0.9999f));  // grazing
@@ -40,8 +40,9 @@ int self_hits(GeneratedScene* s, int spawns) {
     if (!make_sheared_ray({safe_origin(surface, side), outgoing, __builtin_inff()}, &sheared)) return spawns;
     const Triangle& triangle = frame.scene->triangles[hit.triangle];
     Hit again;
-    hits += intersect_triangle(sheared, frame.positions[triangle.vertex(0)], frame.positions[triangle.vertex(1)],
-                               frame.positions[triangle.vertex(2)], &again) &&
+    hits += intersect_triangle(sheared, frame.geometry.positions[triangle.vertex(0)],
+                               frame.geometry.positions[triangle.vertex(1)],
+                               frame.geometry.positions[triangle.vertex(2)], &again) &&
             again.t > 0;
   }
   return hits;
@@ -66,7 +67,7 @@ int body_hits(GeneratedScene* s, const Vec3& center, int spawns) {
     renderer.accel.info->closest(renderer.accel.built, ray, nullptr, &hit, nullptr);
     if (hit.triangle == kNoTriangle) continue;
     Surface surface;
-    renderer.frame.surface(renderer.frame, ray, hit, &surface);
+    renderer.frame.kernels.surface(renderer.frame, ray, hit, &surface);
     Vec3 outgoing = normalize(random_vec3(&rng));
     if (!surface.front) continue;  // at a vertex of the outline a hit on the back is equally valid
     if (dot(outgoing, surface.geometric) < 0) outgoing = -outgoing;
@@ -111,7 +112,7 @@ TEST_CASE("hard_10_geometric_normal_is_within_16_ulp") {
     for (const Vec3& incoming : {Vec3{0.3f, -0.5f, -0.8f}, Vec3{-0.3f, 0.5f, 0.8f}}) {
       if (std::fabs(dot(n, to_double(incoming))) < 1e-5) continue;  // either side
       Surface surface;
-      t->renderer.frame.surface(t->renderer.frame, {{0, 0, 5}, incoming, 1}, {1, 0.25f, 0.25f, i}, &surface);
+      t->renderer.frame.kernels.surface(t->renderer.frame, {{0, 0, 5}, incoming, 1}, {1, 0.25f, 0.25f, i}, &surface);
       Vec3d difference = to_double(surface.geometric) - (dot(n, to_double(incoming)) <= 0 ? n : -n);
       double error = max_component(Vec3d{std::fabs(difference.x), std::fabs(difference.y), std::fabs(difference.z)});
       wrong += !(error <= 16 * 0x1p-23), ++tried;

@@ -51,7 +51,7 @@ TEST_CASE("tile_shadows_change_no_pixel") {
     make_filters(&frame);
     Tracer in_packets, one_by_one;
     Picture expected = trace_all(frame, &in_packets);
-    frame.find_shadows = nullptr;
+    frame.kernels.find_shadows = nullptr;
     CHECK(same_picture(expected, trace_all(frame, &one_by_one)));
     for (int kind = 0; kind < kRayKindCount; ++kind) CHECK(in_packets.rays[kind] == one_by_one.rays[kind]);
   }

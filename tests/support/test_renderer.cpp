@@ -59,8 +59,8 @@ Vec3 trace_ray(const Renderer& renderer, const Vec3& origin, const Vec3& directi
   const FrameData& frame = renderer.frame;
   Ray ray = {origin, direction, __builtin_inff()};
   Hit hit;
-  frame.accel_info->closest(frame.accel, ray, visible_filter(frame), &hit, nullptr);
-  return frame.radiance(tracer, ray, hit, nullptr);
+  frame.geometry.accel_info->closest(frame.geometry.accel, ray, visible_filter(frame), &hit, nullptr);
+  return frame.kernels.radiance(tracer, ray, hit, nullptr);
 }
 
 }  // namespace pocketray

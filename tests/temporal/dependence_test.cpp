@@ -174,11 +174,11 @@ TEST_CASE("dependence_on_the_shape_of_a_lamp") {
   CHECK(same_frames(pair));
   const Array<Vec3>& image = pair.whole->renderer.image;
   const std::vector<Vec3> before(image.begin(), image.end());
-  const LightPoint point = pair.whole->renderer.frame.lights[0];
+  const LightPoint point = pair.whole->renderer.frame.lights.points[0];
   for (Vec3& p : pair.scene->rest_positions) p.x *= 2, p.z /= 2;
   CHECK(same_frames(pair));
   CHECK(whole_because(pair) == "");
-  CHECK(std::memcmp(&point, &pair.whole->renderer.frame.lights[0], sizeof point) == 0);
+  CHECK(std::memcmp(&point, &pair.whole->renderer.frame.lights.points[0], sizeof point) == 0);
   CHECK(std::memcmp(before.data(), image.data, image.bytes()) != 0);
 }
 

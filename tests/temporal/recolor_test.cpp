@@ -386,7 +386,7 @@ TEST_CASE("recoloring_a_lamp_dims_it") {
       CHECK(whole_because(pair) == "");
       CHECK((traced > 100) == changes);
       CHECK(traced < pixel_count(pair) * 3 / 4);
-      CHECK(pair.coherent->renderer.frame.lights.count == points + 1);
+      CHECK(pair.coherent->renderer.frame.lights.points.count == points + 1);
     }
   }
 }

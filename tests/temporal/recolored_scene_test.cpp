@@ -52,7 +52,7 @@ TEST_CASE("recolored_frames_equal_those_of_a_scene_opened_so") {
     if (VirtualLights* lights = virtual_lights_of(fresh->renderer.frame.indirect)) {  // as many walks as when it opened
       const VirtualLights& as_opened = *virtual_lights_of(changed->renderer.frame.indirect);
       lights->lights_per_walk = as_opened.lights_per_walk, lights->area = as_opened.area;
-      fresh->renderer.lights.lit_mask = ~fresh->renderer.effects.mask, fresh->renderer.frame.cone = {0, 0};
+      fresh->renderer.lights.lit_mask = ~fresh->renderer.effects.mask, fresh->renderer.frame.view.cone = {0, 0};
     }
     REQUIRE(render_frame(&fresh->renderer, 0).ok);
     const Array<Vec3>&a = changed->renderer.image, &b = fresh->renderer.image;

@@ -43,7 +43,7 @@ Status trace_pixels(PixelTracer* tracer, std::uint32_t frame, const PixelList& p
     RETURN_IF_ERROR(begin_frame(renderer, {seconds_of(*renderer, frame)}));
     tracer->posed = true, tracer->frame = frame;
   }
-  CHECK(renderer->frame.trace_strip == nullptr);  // pixels would depend on their neighbours
+  CHECK(renderer->frame.kernels.trace_strip == nullptr);  // pixels would depend on their neighbours
   list_spans(pixels, renderer->settings.width, &tracer->spans);
   SpanList list;
   list.spans = tracer->spans.data(), list.span_count = static_cast<std::uint32_t>(tracer->spans.size());

@@ -33,7 +33,7 @@ void add(const CoherentSteps& steps, CoherentSteps* sum) {
 Status render_whole(Renderer* renderer, double seconds, bool ray_by_ray, RenderCost* cost, bool* complete) {
   const Stopwatch watch;
   RETURN_IF_ERROR(begin_frame(renderer, {seconds}));
-  renderer->frame.ray_by_ray = ray_by_ray;
+  renderer->frame.geometry.ray_by_ray = ray_by_ray;
   *complete = trace_frame(renderer, frame_source(renderer, &interrupted));
   stop(watch, cost);
   cost->rays = ray_count(*renderer);

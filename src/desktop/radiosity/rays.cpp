@@ -32,8 +32,8 @@ bool is_seen(const void* context, std::uint32_t triangle, float u, float v) {
   const std::vector<char>* bodies = look.rays->bodies;
   const bool is_body = bodies == nullptr || (*bodies)[triangle];
   if (!m.double_sided && (look.backs == Backs::hide_nothing || !is_body)) {
-    const Vec3& a = frame.positions[t.vertex(0)];
-    const Vec3 outward = cross(frame.positions[t.vertex(1)] - a, frame.positions[t.vertex(2)] - a);
+    const Vec3& a = frame.geometry.positions[t.vertex(0)];
+    const Vec3 outward = cross(frame.geometry.positions[t.vertex(1)] - a, frame.geometry.positions[t.vertex(2)] - a);
     if (is_culled(m, dot(outward, look.direction) <= 0)) return false;
   }
   const HitFilter* filter = look.rays->filter();
@@ -43,9 +43,10 @@ bool is_seen(const void* context, std::uint32_t triangle, float u, float v) {
 // Returns whether a viewer looking along the ray, or against it, sees from one end to the other.
 bool is_clear(const SceneRays& rays, const Ray& ray, const Vec3& direction, Backs backs) {
   const Look look = {&rays, direction, backs};
-  const HitFilter seen = {is_seen, &look, rays.frame.filters_read_point};
+  const HitFilter seen = {is_seen, &look, rays.frame.filters.read_point};
   TraceStats stats;
-  return !rays.frame.accel_info->occluded(rays.frame.accel, ray, backs == Backs::hide ? rays.filter() : &seen, &stats);
+  return !rays.frame.geometry.accel_info->occluded(rays.frame.geometry.accel, ray,
+                                                   backs == Backs::hide ? rays.filter() : &seen, &stats);
 }
 
 }  // namespace
@@ -74,16 +75,17 @@ Outlook look_around(const SceneRays& rays, const Receiver& from, std::uint32_t c
     TraceStats stats;
     Hit hit;
     const Look look = {&rays, direction, Backs::of_bodies_hide};
-    const HitFilter seen = {is_seen, &look, rays.frame.filters_read_point};
-    rays.frame.accel_info->closest(rays.frame.accel, {origin, direction, __builtin_inff()},
-                                   rays.has_sheets ? &seen : rays.filter(), &hit, &stats);
+    const HitFilter seen = {is_seen, &look, rays.frame.filters.read_point};
+    rays.frame.geometry.accel_info->closest(rays.frame.geometry.accel, {origin, direction, __builtin_inff()},
+                                            rays.has_sheets ? &seen : rays.filter(), &hit, &stats);
     if (hit.triangle == kNoTriangle) {
       outlook.open += 1.0 / count;
       continue;
     }
     const Triangle& t = rays.frame.scene->triangles[hit.triangle];
-    const Vec3& a = rays.frame.positions[t.vertex(0)];
-    const Vec3 outward = cross(rays.frame.positions[t.vertex(1)] - a, rays.frame.positions[t.vertex(2)] - a);
+    const Vec3& a = rays.frame.geometry.positions[t.vertex(0)];
+    const Vec3 outward =
+        cross(rays.frame.geometry.positions[t.vertex(1)] - a, rays.frame.geometry.positions[t.vertex(2)] - a);
     const Material& m = rays.frame.scene->materials[t.material()];
     // Backs of lamps and of sheets are other fronts.
     const bool is_body = rays.bodies == nullptr || (*rays.bodies)[hit.triangle];
@@ -123,16 +125,16 @@ Vec3d light_irradiance(const SceneRays& rays, const Receiver& at) {
   Vec3d sum = {0, 0, 0};
   const FrameData& frame = rays.frame;
   const Vec3 origin = origin_of(at), normal = to_float(at.normal);
-  for (int r = 0; r < frame.light_run_count; ++r) {
-    const LightRun& run = frame.light_runs[r];
+  for (int r = 0; r < frame.lights.run_count; ++r) {
+    const LightRun& run = frame.lights.runs[r];
     if (run.sample == find_light_sampler(Effect::area_light)) continue;  // emitting patches
     for (std::uint32_t i = run.begin; i < run.end; ++i) {
       LightSample sample;
-      if (!run.sample(frame.lights[i], origin, &sample)) continue;
+      if (!run.sample(frame.lights.points[i], origin, &sample)) continue;
       const float cosine = dot(normal, sample.direction);
       TraceStats stats;
-      if (!(cosine > 0) ||
-          frame.accel_info->occluded(frame.accel, {origin, sample.to_light, sample.t_max}, rays.filter(), &stats))
+      if (!(cosine > 0) || frame.geometry.accel_info->occluded(
+                               frame.geometry.accel, {origin, sample.to_light, sample.t_max}, rays.filter(), &stats))
         continue;
       sum += to_double(sample.irradiance) * static_cast<double>(cosine);
     }

@@ -9,10 +9,10 @@ namespace pocketray {
 struct SceneRays {
   const FrameData& frame;
   ShadowContext context = {&frame, nullptr};
-  HitFilter opaque = {frame.accept_opaque, &context};
+  HitFilter opaque = {frame.filters.accept_opaque, &context};
   const std::vector<char>* bodies = nullptr;  // by triangle, see bodies.h; null: all are
   bool has_sheets = false;                    // one-sided ones
-  const HitFilter* filter() const { return frame.filter_every_shadow ? &opaque : nullptr; }
+  const HitFilter* filter() const { return frame.filters.every_shadow ? &opaque : nullptr; }
 };
 
 constexpr std::uint32_t kPatchRays = 36;  // from each of a patch's samples, to see what surrounds it

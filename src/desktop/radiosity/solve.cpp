@@ -23,7 +23,7 @@ void RadiositySolution::view(Scene* scene) const {
 
 Status solve_radiosity(const FrameData& frame, const RadiosityOptions& options, const SolverProgress& progress,
                        RadiositySolution* solution) {
-  CHECK(frame.scene != nullptr && frame.accel_info != nullptr && solution != nullptr);
+  CHECK(frame.scene != nullptr && frame.geometry.accel_info != nullptr && solution != nullptr);
   CHECK_GE(options.threads, 1u);
   constexpr double kPatchesShare = 0.3;  // of the time, measured
   *solution = RadiositySolution();

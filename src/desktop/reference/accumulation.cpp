@@ -29,7 +29,7 @@ void take_half(const Reference& reference, Transport transport, std::uint32_t ha
 void accumulate(const Reference& reference, Transport transport, std::uint32_t row, const SampleRange& samples,
                 Accumulation* a) {
   CHECK_LT(row, a->height);
-  CHECK_EQ(a->width, static_cast<std::uint32_t>(reference.world.frame->camera.width));
+  CHECK_EQ(a->width, static_cast<std::uint32_t>(reference.world.frame->view.camera.width));
   add_samples(samples, &a->rows[row]);
   for (std::uint32_t half = 0; half < kReferenceHalfCount; ++half)
     take_half(reference, transport, half, row, samples, a->sums[half].data() + std::size_t(row) * a->width * 3);

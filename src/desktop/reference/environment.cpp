@@ -107,7 +107,7 @@ Vec3d radiance_behind(const FrameData& frame, const Vec3d& direction) {
 }
 
 Vec3d radiance_beyond_depth(const FrameData& frame, const Vec3d& direction) {
-  return shown_environment(frame) ? map_at(*frame.scene, direction) : to_double(frame.beyond_depth);
+  return shown_environment(frame) ? map_at(*frame.scene, direction) : to_double(frame.cut_off.beyond_depth);
 }
 
 std::size_t environment_shares_need(const FrameData& frame) {

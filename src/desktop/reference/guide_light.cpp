@@ -121,10 +121,10 @@ void follow_near_light(const Reference& reference, const PunctualLight& light, s
 // Calls f(light) for each light without area.
 template <class Function>
 void for_punctual_lights(const FrameData& frame, Function f) {
-  for (int r = 0; r < frame.light_run_count; ++r)
-    for (std::uint32_t i = frame.light_runs[r].begin; i < frame.light_runs[r].end; ++i) {
+  for (int r = 0; r < frame.lights.run_count; ++r)
+    for (std::uint32_t i = frame.lights.runs[r].begin; i < frame.lights.runs[r].end; ++i) {
       PunctualLight light;
-      if (is_punctual(frame.lights[i], frame.light_runs[r].sample, &light)) f(light);
+      if (is_punctual(frame.lights.points[i], frame.lights.runs[r].sample, &light)) f(light);
     }
 }
 
@@ -140,7 +140,7 @@ double scene_extent(const FrameData& frame) {
   double extent = 0;
   for (int axis = 0; axis < 3; ++axis) {
     double low = kInfinity, high = -kInfinity;
-    for (const Vec3& p : frame.positions)
+    for (const Vec3& p : frame.geometry.positions)
       low = std::fmin(low, static_cast<double>(p[axis])), high = std::fmax(high, static_cast<double>(p[axis]));
     extent = std::fmax(extent, high - low);
   }

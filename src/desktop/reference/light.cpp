@@ -149,10 +149,11 @@ struct ReferenceLight {
 bool find_light(const FrameData& frame, const LightRun& run, std::uint32_t i, const ReferenceSurface& s,
                 const Vec3d& to_viewer, ReferenceLight* found) {
   Vec3d irradiance;
-  if (!reach(frame.lights[i], run.sample, s.point, &found->direction, &found->distance, &irradiance)) return false;
+  if (!reach(frame.lights.points[i], run.sample, s.point, &found->direction, &found->distance, &irradiance))
+    return false;
   const double cosine = dot(s.normal, found->direction);
   if (!(cosine > 0)) return false;
-  if (is_own(frame, s, frame.lights[i]))
+  if (is_own(frame, s, frame.lights.points[i]))
     for (int c = 0; c < 3; ++c)
       irradiance[c] = std::min(irradiance[c], kPi * static_cast<double>(s.material->emission[c]));
   found->weight = max_component(irradiance) * cosine;
@@ -162,8 +163,9 @@ bool find_light(const FrameData& frame, const LightRun& run, std::uint32_t i, co
 Vec3d arriving(const Reference& reference, const ReferenceSurface& s, std::uint32_t i, const ReferenceLight& light) {
   const FrameData& frame = *reference.world.frame;
   if (is_zero(light.sent)) return light.sent;
-  return light.sent * transmittance(reference.world, leave(frame, s, light.direction, light.distance),
-                                    {kNone, frame.lights[i].material != kNone ? &frame.lights[i] : nullptr, false});
+  return light.sent *
+         transmittance(reference.world, leave(frame, s, light.direction, light.distance),
+                       {kNone, frame.lights.points[i].material != kNone ? &frame.lights.points[i] : nullptr, false});
 }
 
 // A flat lamp as in polygon_light.h, and the fraction of its light that a surface gets as it sets.
@@ -253,10 +255,10 @@ Vec3d sum_light_points(const Reference& reference, const ReferenceSurface& s, co
                        bool with_area_lights) {
   const FrameData& frame = *reference.world.frame;
   Vec3d sum = {0, 0, 0};
-  for (int r = 0; r < frame.light_run_count; ++r) {
-    const LightRun& run = frame.light_runs[r];
+  for (int r = 0; r < frame.lights.run_count; ++r) {
+    const LightRun& run = frame.lights.runs[r];
     for (std::uint32_t i = run.begin; i < run.end; ++i) {
-      const LightPoint& light = frame.lights[i];
+      const LightPoint& light = frame.lights.points[i];
       const bool is_area = light.material != kNone;
       if (is_area && !with_area_lights) continue;
       // A piece of an emitter does not light itself; stored light includes that of its own material.

@@ -125,7 +125,7 @@ Vec3d trace_path(const Reference& reference, const ReferenceOptions& options, Re
   bool model = options.transport == Transport::model;
   Vec3d sum = {0, 0, 0};
   Path path;
-  path.media = frame.eye_media;
+  path.media = frame.view.eye_media;
   for (std::uint32_t depth = 0;; ++depth) {
     ReferenceSurface s;
     ReferenceContact contact;
@@ -184,7 +184,7 @@ namespace {
 // Calls add(column, radiance) with every sample of a row.
 template <class Add>
 void for_samples(const Reference& reference, const ReferenceOptions& options, std::uint32_t row, Add add) {
-  const CameraRays& camera = reference.world.frame->camera;
+  const CameraRays& camera = reference.world.frame->view.camera;
   std::uint32_t width = static_cast<std::uint32_t>(camera.width);
   CHECK_GT(options.samples_per_pixel, 0u);
   CHECK_LT(row, static_cast<std::uint32_t>(camera.height));
@@ -202,7 +202,7 @@ void for_samples(const Reference& reference, const ReferenceOptions& options, st
 
 void trace_reference(const Reference& reference, const ReferenceOptions& options, std::uint32_t row_begin,
                      std::uint32_t row_end, Vec3d* means) {
-  const CameraRays& camera = reference.world.frame->camera;
+  const CameraRays& camera = reference.world.frame->view.camera;
   CHECK(row_begin <= row_end && row_end <= static_cast<std::uint32_t>(camera.height));
   CHECK(means != nullptr);
   std::uint32_t width = static_cast<std::uint32_t>(camera.width);

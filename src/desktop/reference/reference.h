@@ -26,7 +26,7 @@ struct ReferenceOptions {
   std::uint32_t samples_per_pixel = 64;   // preferably a power of two, see sobol.h
   std::uint32_t first_sample = 0;         // of a pixel's sequence: continues an earlier picture
   std::uint32_t depth_max = 0xFFFFFFFFu;  // after that many scatterings, a path takes direct light and ends; in the
-                                          // renderer's model with FrameData::beyond_depth
+                                          // renderer's model with CutOff::beyond_depth
   std::uint64_t seed = 1;
 };
 

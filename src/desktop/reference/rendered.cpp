@@ -85,9 +85,9 @@ Vec3d follow(const Reference& reference, const ReferenceRay& ray, const Branch& 
 
 void trace_as_rendered(const Reference& reference, std::uint32_t row_begin, std::uint32_t row_end, Vec3d* picture) {
   const FrameData& frame = *reference.world.frame;
-  std::uint32_t width = static_cast<std::uint32_t>(frame.camera.width), n = frame.settings.samples_per_pixel;
+  std::uint32_t width = static_cast<std::uint32_t>(frame.view.camera.width), n = frame.settings.samples_per_pixel;
   CHECK(n >= 1 && n <= kSampleCountMax);
-  CHECK(row_begin <= row_end && row_end <= static_cast<std::uint32_t>(frame.camera.height));
+  CHECK(row_begin <= row_end && row_end <= static_cast<std::uint32_t>(frame.view.camera.height));
   CHECK(picture != nullptr);
   for (std::uint32_t y = row_begin; y < row_end; ++y)
     for (std::uint32_t x = 0; x < width; ++x) {
@@ -95,8 +95,8 @@ void trace_as_rendered(const Reference& reference, std::uint32_t row_begin, std:
       for (std::uint32_t i = 0; i < n; ++i) {
         Vec2 at = sample_offset(i, n);
         ReferenceRay ray =
-            reference_camera_ray(frame.camera, x + static_cast<double>(at.x), y + static_cast<double>(at.y));
-        sum += follow(reference, ray, {0, frame.eye_media});
+            reference_camera_ray(frame.view.camera, x + static_cast<double>(at.x), y + static_cast<double>(at.y));
+        sum += follow(reference, ray, {0, frame.view.eye_media});
       }
       picture[std::size_t(y - row_begin) * width + x] = sum / static_cast<double>(n);
     }

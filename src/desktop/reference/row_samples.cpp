@@ -5,8 +5,8 @@
 namespace pocketray {
 
 RowSamples take_row(const Reference& reference, Transport transport, std::uint32_t row, const SampleRange& samples) {
-  const auto width = static_cast<std::size_t>(reference.world.frame->camera.width);
-  CHECK_LT(row, static_cast<std::uint32_t>(reference.world.frame->camera.height));
+  const auto width = static_cast<std::size_t>(reference.world.frame->view.camera.width);
+  CHECK_LT(row, static_cast<std::uint32_t>(reference.world.frame->view.camera.height));
   CHECK_LT(samples.begin, samples.end);
   RowSamples taken = {row, samples, std::vector<ExactSum>(kReferenceHalfCount * width * 3)};
   for (std::uint32_t half = 0; half < kReferenceHalfCount; ++half)

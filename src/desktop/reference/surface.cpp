@@ -177,10 +177,10 @@ ReferenceSurface reference_surface(const FrameData& frame, const ReferenceHit& h
   s.material = &scene.materials[t.material()];
   s.point = {0, 0, 0}, s.magnitude = 0;
   for (std::uint32_t i = 0; i < 3; ++i) {
-    corner[i] = to_double(frame.positions[t.vertex(i)]);
+    corner[i] = to_double(frame.geometry.positions[t.vertex(i)]);
     s.point += corner[i] * weight[i];
     for (int axis = 0; axis < 3; ++axis) s.magnitude = std::fmax(s.magnitude, std::fabs(corner[i][axis]));
-    if (frame.normals.count) normal += to_double(frame.normals[t.vertex(i)]) * weight[i];
+    if (frame.geometry.normals.count) normal += to_double(frame.geometry.normals[t.vertex(i)]) * weight[i];
   }
   Vec3d outward = normalize(cross(corner[1] - corner[0], corner[2] - corner[0]));
   s.front = dot(outward, direction) <= 0;
@@ -229,13 +229,13 @@ ReferenceSurface reference_surface(const FrameData& frame, const ReferenceHit& h
 
 ReferenceRay leave(const FrameData& frame, const ReferenceSurface& s, const Vec3d& direction, double t_max) {
   Vec3d origin = s.point;
-  if (frame.normals.count && !(dot(direction, s.geometric) > 0) && dot(direction, s.normal) > 0) {
+  if (frame.geometry.normals.count && !(dot(direction, s.geometric) > 0) && dot(direction, s.normal) > 0) {
     const Triangle& t = frame.scene->triangles[s.triangle];
     double weight[3] = {1 - s.u - s.v, s.u, s.v};
     for (std::uint32_t i = 0; i < 3; ++i) {
-      Vec3d n = to_double(frame.normals[t.vertex(i)]);
+      Vec3d n = to_double(frame.geometry.normals[t.vertex(i)]);
       if (dot(n, s.normal) < 0) n = -n;
-      double below = dot(s.point - to_double(frame.positions[t.vertex(i)]), n);
+      double below = dot(s.point - to_double(frame.geometry.positions[t.vertex(i)]), n);
       if (below < 0) origin += n * (-below * weight[i]);
     }
   }

@@ -112,9 +112,9 @@ ReferenceLeaf make_leaf(const FrameData& frame, const Item* items, std::uint32_t
     leaf.triangle[lane] = lane < count ? items[lane].triangle : kNone;
     for (std::uint32_t i = 0; i < 3; ++i)
       for (int axis = 0; axis < 3; ++axis)
-        leaf.corner[i][axis][lane] = lane < count
-                                         ? frame.positions[frame.scene->triangles[items[lane].triangle].vertex(i)][axis]
-                                         : std::numeric_limits<float>::quiet_NaN();
+        leaf.corner[i][axis][lane] =
+            lane < count ? frame.geometry.positions[frame.scene->triangles[items[lane].triangle].vertex(i)][axis]
+                         : std::numeric_limits<float>::quiet_NaN();
   }
   return leaf;
 }
@@ -124,9 +124,9 @@ Array<Item> make_items(const FrameData& frame, Arena* arena, ReferenceWorld* wor
   for (std::uint32_t i = 0; i < items.count; ++i) {
     items[i] = {empty_box(), i};
     for (std::uint32_t vertex : frame.scene->triangles[i].vertices()) {
-      items[i].box = merge(items[i].box, frame.positions[vertex]);
+      items[i].box = merge(items[i].box, frame.geometry.positions[vertex]);
       for (int axis = 0; axis < 3; ++axis)
-        world->magnitude[axis] = std::fmax(world->magnitude[axis], std::fabs(frame.positions[vertex][axis]));
+        world->magnitude[axis] = std::fmax(world->magnitude[axis], std::fabs(frame.geometry.positions[vertex][axis]));
     }
   }
   return items;

@@ -63,7 +63,7 @@ inline const Material& material_of(const FrameData& frame, std::uint32_t triangl
   return frame.scene->materials[material_index(frame, triangle)];
 }
 inline Vec3d corner_of(const FrameData& frame, std::uint32_t triangle, std::uint32_t i) {
-  return to_double(frame.positions[frame.scene->triangles[triangle].vertex(i)]);
+  return to_double(frame.geometry.positions[frame.scene->triangles[triangle].vertex(i)]);
 }
 // Alpha of the material at a hit, from full-size texels.
 double alpha_at(const FrameData& frame, std::uint32_t triangle, double u, double v);

@@ -63,8 +63,8 @@ Status prepare_reference(ReferenceView* view, Renderer* renderer, double seconds
   Status status = begin_frame(renderer, {seconds});
   if (status.ok) {
     view->frame = renderer->frame;
-    view->lights.assign(renderer->frame.lights.begin(), renderer->frame.lights.end());
-    view->frame.lights = {view->lights.data(), static_cast<std::uint32_t>(view->lights.size())};
+    view->lights.assign(renderer->frame.lights.points.begin(), renderer->frame.lights.points.end());
+    view->frame.lights.points = {view->lights.data(), static_cast<std::uint32_t>(view->lights.size())};
   }
   Status restored = change_settings(renderer, before);
   return status.ok ? restored : status;

@@ -38,7 +38,7 @@ Status measure_adding(Renderer* renderer, std::uint32_t pitch, double* ns) {
   for (double& time : times) {
     const std::uint64_t begin_ns = kSystemClock.now_ns();
     take_mapped_surfaces(renderer, hits.data(), settings.height, grid, surfaces.data());
-    const LightMap map = {grid, renderer->frame.camera, 0, surfaces.data(), lights.data()};
+    const LightMap map = {grid, renderer->frame.view.camera, 0, surfaces.data(), lights.data()};
     add_mapped_light(renderer, hits.data(), map, 0, settings.height);
     time = static_cast<double>(kSystemClock.now_ns() - begin_ns) / static_cast<double>(pixel_count(*renderer));
   }

@@ -41,7 +41,7 @@ std::string reference_key(const Rig& rig, const AccuracyOptions& options, Transp
   Json key = {{"kind", name_of(transport)},
               {"scene", rig.scene_hash},
               {"size", std::to_string(renderer.settings.width) + "x" + std::to_string(renderer.settings.height)},
-              {"camera", camera_text(renderer.frame.camera)},
+              {"camera", camera_text(renderer.frame.view.camera)},
               {"time", options.seconds},
               {"effects", options.common.effects},
               {"sampler", kReferenceSampler}};

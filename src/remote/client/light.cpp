@@ -93,7 +93,7 @@ void take_map(Renderer* renderer, Client* client) {
     std::uint32_t row_end = 0;
     while (row_end < client->settings.height && is_own(*client, row_end)) ++row_end;
     take_mapped_surfaces(renderer, l->first_hits.data, row_end, l->grid, l->surfaces[next].data);
-    l->asked_camera = renderer->frame.camera;
+    l->asked_camera = renderer->frame.view.camera;
     l->has_surfaces = true;
   }
   if (l->asked.frame == 0 || !l->has_surfaces || !l->has_come) return;

@@ -101,7 +101,7 @@ Status write_povray_scene(const PovrayScene& s, const std::string& path) {
   std::FILE* file = std::fopen(path.c_str(), "w");
   if (!file) return failure("cannot write %s", path.c_str());
   std::fprintf(file, "#version 3.7;\nglobal_settings { assumed_gamma 1 }\nbackground { rgb 0 }\n");
-  write_camera(file, s.renderer->frame.camera);
+  write_camera(file, s.renderer->frame.view.camera);
   write_light(file, s.light);
   write_mesh(file, s.renderer->scene);
   return std::fclose(file) == 0 ? success() : failure("cannot write %s: is the disk full?", path.c_str());

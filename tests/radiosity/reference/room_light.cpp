@@ -30,12 +30,13 @@ std::vector<MattePoint> matte_points(const FrameData& frame) {
   const std::uint32_t width = frame.settings.width, height = frame.settings.height;
   std::vector<MattePoint> points(std::size_t(width) * height);
   for (std::uint32_t i = 0; i < points.size(); ++i) {
-    const Ray ray = camera_ray(frame.camera, static_cast<float>(i % width) + .5f, static_cast<float>(i / width) + .5f);
+    const Ray ray =
+        camera_ray(frame.view.camera, static_cast<float>(i % width) + .5f, static_cast<float>(i / width) + .5f);
     Hit hit;
-    frame.accel_info->closest(frame.accel, ray, visible_filter(frame), &hit, nullptr);
+    frame.geometry.accel_info->closest(frame.geometry.accel, ray, visible_filter(frame), &hit, nullptr);
     if (hit.triangle == kNoTriangle) continue;
     Surface& s = points[i].surface;
-    frame.first_surface(frame, ray, hit, &s);
+    frame.kernels.first_surface(frame, ray, hit, &s);
     const Material& m = *s.material;
     points[i].is_matte = !is_zero(s.diffuse) && (is_zero(m.specular) || reflects_surroundings(m)) &&
                          is_zero(m.mirror) && is_zero(m.transmission) && is_zero(m.emission) && !m.unlit &&
@@ -51,8 +52,9 @@ struct Look {
 };
 bool is_front(const FrameData& frame, std::uint32_t triangle, const Vec3& direction) {
   const Triangle& t = frame.scene->triangles[triangle];
-  const Vec3& a = frame.positions[t.vertex(0)];
-  return dot(cross(frame.positions[t.vertex(1)] - a, frame.positions[t.vertex(2)] - a), direction) < 0;
+  const Vec3& a = frame.geometry.positions[t.vertex(0)];
+  return dot(cross(frame.geometry.positions[t.vertex(1)] - a, frame.geometry.positions[t.vertex(2)] - a), direction) <
+         0;
 }
 bool is_seen(const void* context, std::uint32_t triangle, float, float) {
   const Look& look = *static_cast<const Look*>(context);
@@ -65,7 +67,7 @@ Vec3d emission_along(const FrameData& frame, const Ray& ray) {
   Hit hit;
   const Look look = {frame, ray.direction};
   const HitFilter seen = {is_seen, &look, false};
-  frame.accel_info->closest(frame.accel, ray, &seen, &hit, nullptr);
+  frame.geometry.accel_info->closest(frame.geometry.accel, ray, &seen, &hit, nullptr);
   if (hit.triangle == kNoTriangle) return {0, 0, 0};
   return to_double(frame.scene->materials[frame.scene->triangles[hit.triangle].material()].emission);
 }

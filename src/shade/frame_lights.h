@@ -1,0 +1,24 @@
+// The lights of a frame.
+#pragma once
+#include "shade/light_polygon.h"
+#include "shade/light_tree.h"
+#include "shade/point_group.h"
+
+namespace pocketray {
+
+struct LightRun {
+  std::uint32_t begin, end;
+  LightSampler sample;
+  const LightPolygon* polygons;  // one per area light; null: light comes from their points
+};
+
+struct Lights {
+  Array<const LightPoint> points;
+  LightRun runs[4];
+  int run_count = 0;
+  LightTree tree = {};  // set with Effect::source_selection
+  PointGroups point_groups = {};
+  Array<const LightPolygon> polygons;  // the polygons that LightRun::polygons points into
+};
+
+}  // namespace pocketray
