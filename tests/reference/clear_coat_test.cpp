@@ -3,9 +3,9 @@
 
 #include "base/fmath.h"
 #include "brdf/clear_coat.h"
+#include "desktop/reference/rendered.h"
+#include "desktop/reference/surface.h"
 #include "reference/reference_helpers.h"
-#include "reference/rendered.h"
-#include "reference/surface.h"
 #include "shade/camera.h"
 #include "support/effort.h"
 
@@ -83,8 +83,9 @@ TEST_CASE("reference_coat_keeps_energy_in_a_furnace") {
       }
 }
 
-// Goal: a smooth coat mirrors by its own normal, not by the bumps of its base, and by Fresnel. Method: half a ceiling of
-// known radiance over a black surface whose bumps would mirror the dark; both kinds of paths, and the renderer's rays.
+// Goal: a smooth coat mirrors by its own normal, not by the bumps of its base, and by Fresnel. Method: half a ceiling
+// of known radiance over a black surface whose bumps would mirror the dark; both kinds of paths, and the renderer's
+// rays.
 TEST_CASE("reference_coat_mirrors_by_its_own_normal") {
   GeneratedScene scene;
   Material black, ceiling;

@@ -6,9 +6,9 @@
 #include "base/fmath.h"
 #include "brdf/brdf_list.h"
 #include "brdf/directions.h"
-#include "reference/light.h"
+#include "desktop/reference/light.h"
+#include "desktop/reference/rendered.h"
 #include "reference/reference_helpers.h"
-#include "reference/rendered.h"
 #include "shade/camera.h"
 #include "support/effort.h"
 #include "support/generated_scene.h"
@@ -156,9 +156,8 @@ TEST_CASE("reference_density_is_that_of_its_samples") {
 // reference selects at random, within five standard errors. Rays that float rounding moves across an edge are few.
 TEST_CASE("reference_model_is_the_renderers_limit") {
   std::uint32_t without = bit(Feature::emission) | bit(Feature::animation) | bit(Feature::supersampling);
-  std::uint32_t chance =
-      bit(Feature::mirror) | bit(Feature::refraction) | bit(Feature::thin) | bit(Feature::alpha_blend) |
-      bit(Feature::clear_coat);
+  std::uint32_t chance = bit(Feature::mirror) | bit(Feature::refraction) | bit(Feature::thin) |
+                         bit(Feature::alpha_blend) | bit(Feature::clear_coat);
   std::vector<std::uint32_t> sets = {kAllFeatures & ~without};
   for (int i = 0; i < kFeatureCount; ++i)
     if (!(without & 1u << i)) sets.push_back(1u << i | bit(Feature::point_light));
