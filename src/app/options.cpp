@@ -281,9 +281,9 @@ void add_servers_options(Command command, ServersOptions* o) {
       .group(group);
   command.add_option("--cost-cap", o->cost_cap, "largest cost per frame: takes the fastest split within it")
       .group(group);
-  const std::vector<const char*> of_servers = {"--key",          "--share",       "--verify",   "--near-lossless",
-                                               "--split",        "--light-pitch", "--price",    "--light-every",
-                                               "--energy-pixel", "--energy-byte", "--cost-cap", "--cost-weight"};
+  const std::vector<const char*> of_servers = {"--share",       "--verify",   "--near-lossless", "--split",
+                                               "--light-pitch", "--price",    "--light-every",   "--energy-pixel",
+                                               "--energy-byte", "--cost-cap", "--cost-weight"};
   command.after_parsing([=] {
     for (const char* name : of_servers)
       if (server.count() == 0 && command.get_option(name).count() > 0)
