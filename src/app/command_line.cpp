@@ -149,7 +149,6 @@ Option Command::get_option(const std::string& name) const {
 void Command::footer(const std::string& text) { app_->footer(text); }
 
 void Command::callback(std::function<void()> run) { app_->callback(std::move(run)); }
-void Command::after_parsing(std::function<void()> run) { app_->parse_complete_callback(std::move(run)); }
 
 CommandLine::CommandLine(const std::string& program_name, const std::string& description)
     : app_(std::make_unique<CLI::App>(description, program_name)) {}

@@ -73,8 +73,6 @@ class Command {
   void footer(const std::string& text);
   // Called by CommandLine::parse() if the command is given.
   void callback(std::function<void()> run);
-  // Called before that, once the command's options are parsed.
-  void after_parsing(std::function<void()> run);
 
  private:
   CLI::App* app_;

@@ -5,7 +5,6 @@
 #include "accel/accel_list.h"
 #include "engine/light_map.h"
 #include "scene/builtin/builtin.h"
-#include "session/note.h"
 
 namespace pocketray {
 namespace {
@@ -236,7 +235,7 @@ void add_budget_options(Command command, BudgetOptions* o) {
 
 void add_servers_options(Command command, ServersOptions* o) {
   const char* group = "Render servers";
-  Option server = add_server_option(command, &o->addresses).group(group);
+  add_server_option(command, &o->addresses).group(group);
   add_key_option(command, &o->key).group(group);
   command.add_option("--share", o->device_share, "the device's share of the rows, 0 … 1, instead of the fastest")
       .group(group);
@@ -281,14 +280,6 @@ void add_servers_options(Command command, ServersOptions* o) {
       .group(group);
   command.add_option("--cost-cap", o->cost_cap, "largest cost per frame: takes the fastest split within it")
       .group(group);
-  const std::vector<const char*> of_servers = {"--share",       "--verify",   "--near-lossless", "--split",
-                                               "--light-pitch", "--price",    "--light-every",   "--energy-pixel",
-                                               "--energy-byte", "--cost-cap", "--cost-weight"};
-  command.after_parsing([=] {
-    for (const char* name : of_servers)
-      if (server.count() == 0 && command.get_option(name).count() > 0)
-        print_note(std::string(name) + " has no effect: it is for render servers; add --server HOST:PORT");
-  });
 }
 
 void add_side_by_side_option(Command command, SideBySideOptions* o) {

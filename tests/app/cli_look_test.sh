@@ -22,7 +22,6 @@ expect view_has_them 1 'background' view cube "${small[@]}" --screen null --fram
 check nothing_refused_is_written test ! -e refused.ppm
 if "${run[@]}" render --help | grep -q -- '--server'; then
   expect light_of_servers 1 'drop --server' render cube "${small[@]}" --light sun --server 127.0.0.1:1 -o refused.ppm
-  expect share_of_no_server 0 'share has no effect: it is for render servers' render cube "${small[@]}" --share .5 -o alone.ppm
   expect background_of_servers 1 'drop --server' render cube "${small[@]}" --background 1,1,1 --server 127.0.0.1:1 -o refused.ppm
 fi
 
