@@ -29,32 +29,32 @@ constexpr std::uint16_t kEscape = 1, kBackspace = 14, kTab = 15, kE = 18, kT = 2
 // byte by radio takes 1,096 nJ: receiving by Wi-Fi takes a phone 137 mW for each Mbit/s [Huang et al. 2012, "A Close
 // Examination of Performance and Power Characteristics of 4G LTE Networks", table 4].
 struct Device {
-  const char* name;         // as on the command line
-  const char* description;  // one line
-  const char* cpu_class;    // build to use: a class of devices/README.md, or x86-64
-  int screen_width, screen_height;
-  int bits_per_pixel;
-  const char* channel_order;  // rgb: red in the highest bits; bgr: blue. The driver's report overrides it.
-  int rotation;               // degrees clockwise to turn a picture on the screen so that it is upright
-  std::size_t memory_bytes;   // default of the memory block: half of Linux's memory, at most 512 MiB
-  const std::uint16_t*
-      keys;  // key codes of up, down, left, right, A, B, X, Y, L, R, start, select; null: those of a keyboard
+  const char* name = nullptr;         // as on the command line
+  const char* description = nullptr;  // one line
+  const char* cpu_class = nullptr;    // build to use: a class of devices/README.md, or x86-64
+  int screen_width = 320, screen_height = 240;
+  int bits_per_pixel = 0;
+  const char* channel_order = "rgb";  // rgb: red in the highest bits; bgr: blue. The driver's report overrides it.
+  int rotation = 0;                   // degrees clockwise to turn a picture on the screen so that it is upright
+  std::size_t memory_bytes = 0;       // default of the memory block: half of Linux's memory, at most 512 MiB
+  // Key codes of up, down, left, right, A, B, X, Y, L, R, start, select; null: those of a keyboard.
+  const std::uint16_t* keys = nullptr;
 
   // For emulation on a desktop.
-  int core_count;                       // of its CPU; 0: as many as this machine has
-  double slowdown;                      // time per pixel on one core relative to one x86-64 core, with the same program
-  std::uint64_t link_bytes_per_second;  // each way, TCP payload
-  std::uint64_t link_latency_ns;        // one way
-  std::uint64_t link_jitter_ns;         // maximum addition to the latency
+  int core_count = 0;   // of its CPU; 0: as many as this machine has
+  double slowdown = 0;  // time per pixel on one core relative to one x86-64 core, with the same program
+  std::uint64_t link_bytes_per_second = 0;  // each way, TCP payload
+  std::uint64_t link_latency_ns = 0;        // one way
+  std::uint64_t link_jitter_ns = 0;         // maximum addition to the latency
 
   // Time to decode rows of a render server on one core, for emulation: per pixel and per byte of code.
-  double decode_pixel_ns, decode_byte_ns;
+  double decode_pixel_ns = 0, decode_byte_ns = 0;
   // Time to prepare a frame of a moving scene on one core: per triangle and per vertex that move (prepare_cost.h).
-  double prepare_triangle_ns, prepare_vertex_ns;
+  double prepare_triangle_ns = 0, prepare_vertex_ns = 0;
 
   // Energy beyond that of the idle device, for the fronts of split-report.
-  double core_watts;       // of one busy core
-  double byte_nanojoules;  // to receive a byte
+  double core_watts = 0;       // of one busy core
+  double byte_nanojoules = 0;  // to receive a byte
 };
 
 constexpr double kRadioNanojoules = 1096;

@@ -12,26 +12,25 @@ namespace platform {
 // (gp32x.com, topic 50468, 2009).
 // Energy: ARM920T, 560 mW at 200 MHz in 0.25 µm [Furber 2000, "ARM System-on-Chip Architecture", table 12.5], of which
 // this chip is a shrink; a guess of 10 mA at 3.3 V for USB while it carries 1 MB/s.
-constexpr Device kGp2x = {"gp2x",
-                          "GamePark GP2X: ARM920T 200 MHz, no FPU",
-                          "armv4t",
-                          320,
-                          240,
-                          16,
-                          "rgb",
-                          0,
-                          mebibytes(16),
-                          nullptr,
-                          1,
-                          466,
-                          1'000'000,
-                          microseconds(500),
-                          microseconds(500),
-                          175,
-                          4500,
-                          15'500,
-                          27'000,
-                          0.56,
-                          33};
+constexpr Device kGp2x = [] {
+  Device d;
+  d.name = "gp2x";
+  d.description = "GamePark GP2X: ARM920T 200 MHz, no FPU";
+  d.cpu_class = "armv4t";
+  d.bits_per_pixel = 16;
+  d.memory_bytes = mebibytes(16);
+  d.core_count = 1;
+  d.slowdown = 466;
+  d.link_bytes_per_second = 1'000'000;
+  d.link_latency_ns = microseconds(500);
+  d.link_jitter_ns = microseconds(500);
+  d.decode_pixel_ns = 175;
+  d.decode_byte_ns = 4500;
+  d.prepare_triangle_ns = 15'500;
+  d.prepare_vertex_ns = 27'000;
+  d.core_watts = 0.56;
+  d.byte_nanojoules = 33;
+  return d;
+}();
 
 }  // namespace platform

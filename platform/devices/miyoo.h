@@ -10,26 +10,26 @@ namespace platform {
 // reached in an office (web.luchs.at, "Using 802.11n and WPA2"): its CPU is as slow as theirs. Latency and jitter are
 // guesses.
 // Energy: a guess: as much per MHz as the ARM1176 of pi_zero.h.
-constexpr Device kMiyoo = {"miyoo",
-                           "Miyoo and kin: F1C100s, ARM926EJ-S, no FPU",
-                           "armel",
-                           320,
-                           240,
-                           16,
-                           "rgb",
-                           0,
-                           mebibytes(16),
-                           kOpenDinguxKeys,
-                           1,
-                           228,
-                           2'000'000,
-                           microseconds(1500),
-                           microseconds(2000),
-                           86,
-                           2200,
-                           7600,
-                           13'200,
-                           0.08,
-                           kRadioNanojoules};
+constexpr Device kMiyoo = [] {
+  Device d;
+  d.name = "miyoo";
+  d.description = "Miyoo and kin: F1C100s, ARM926EJ-S, no FPU";
+  d.cpu_class = "armel";
+  d.bits_per_pixel = 16;
+  d.memory_bytes = mebibytes(16);
+  d.keys = kOpenDinguxKeys;
+  d.core_count = 1;
+  d.slowdown = 228;
+  d.link_bytes_per_second = 2'000'000;
+  d.link_latency_ns = microseconds(1500);
+  d.link_jitter_ns = microseconds(2000);
+  d.decode_pixel_ns = 86;
+  d.decode_byte_ns = 2200;
+  d.prepare_triangle_ns = 7600;
+  d.prepare_vertex_ns = 13'200;
+  d.core_watts = 0.08;
+  d.byte_nanojoules = kRadioNanojoules;
+  return d;
+}();
 
 }  // namespace platform

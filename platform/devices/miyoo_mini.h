@@ -15,26 +15,29 @@ constexpr std::uint16_t kMiyooMiniKeys[] = {key::kUp,    key::kDown,        key:
 // 20 MHz, out of at most 50 (tanaza.com, "Bitrate, throughput, bandwidth", 2014). Latency and jitter are guesses.
 // Energy: a board with one Cortex-A7 at 528 MHz takes 200 mW more under a stress test than idle (wiki.dave.eu, "Power
 // consumption (SBC Lynx)", 2016), memory included; here in proportion to the clock.
-constexpr Device kMiyooMini = {"miyoo-mini",
-                               "Miyoo Mini: two Cortex-A7 1.2 GHz, NEON",
-                               "armhf",
-                               640,
-                               480,
-                               32,
-                               "rgb",
-                               180,
-                               mebibytes(64),
-                               kMiyooMiniKeys,
-                               2,
-                               14,
-                               4'625'000,
-                               microseconds(1500),
-                               microseconds(2000),
-                               20,
-                               725,
-                               670,
-                               290,
-                               0.45,
-                               kRadioNanojoules};
+constexpr Device kMiyooMini = [] {
+  Device d;
+  d.name = "miyoo-mini";
+  d.description = "Miyoo Mini: two Cortex-A7 1.2 GHz, NEON";
+  d.cpu_class = "armhf";
+  d.screen_width = 640;
+  d.screen_height = 480;
+  d.bits_per_pixel = 32;
+  d.rotation = 180;
+  d.memory_bytes = mebibytes(64);
+  d.keys = kMiyooMiniKeys;
+  d.core_count = 2;
+  d.slowdown = 14;
+  d.link_bytes_per_second = 4'625'000;
+  d.link_latency_ns = microseconds(1500);
+  d.link_jitter_ns = microseconds(2000);
+  d.decode_pixel_ns = 20;
+  d.decode_byte_ns = 725;
+  d.prepare_triangle_ns = 670;
+  d.prepare_vertex_ns = 290;
+  d.core_watts = 0.45;
+  d.byte_nanojoules = kRadioNanojoules;
+  return d;
+}();
 
 }  // namespace platform

@@ -11,26 +11,25 @@ namespace platform {
 // and jitter are guesses: the paper has none.
 // Energy: the thermal design power of an ultra low voltage Pentium M at 1 GHz (Intel, "Pentium M Processor Datasheet",
 // 252612), an upper bound.
-constexpr Device kTablet = {"tablet",
-                            "The tablet PC of Aranha et al.: Pentium M 1 GHz",
-                            "x86-64",
-                            320,
-                            240,
-                            32,
-                            "rgb",
-                            0,
-                            mebibytes(251),
-                            nullptr,
-                            1,
-                            4.47,
-                            2'375'000,
-                            microseconds(1500),
-                            microseconds(1000),
-                            5,
-                            410,
-                            335,
-                            107,
-                            7,
-                            kRadioNanojoules};
+constexpr Device kTablet = [] {
+  Device d;
+  d.name = "tablet";
+  d.description = "The tablet PC of Aranha et al.: Pentium M 1 GHz";
+  d.cpu_class = "x86-64";
+  d.bits_per_pixel = 32;
+  d.memory_bytes = mebibytes(251);
+  d.core_count = 1;
+  d.slowdown = 4.47;
+  d.link_bytes_per_second = 2'375'000;
+  d.link_latency_ns = microseconds(1500);
+  d.link_jitter_ns = microseconds(1000);
+  d.decode_pixel_ns = 5;
+  d.decode_byte_ns = 410;
+  d.prepare_triangle_ns = 335;
+  d.prepare_vertex_ns = 107;
+  d.core_watts = 7;
+  d.byte_nanojoules = kRadioNanojoules;
+  return d;
+}();
 
 }  // namespace platform

@@ -12,7 +12,7 @@
 #include "session/report.h"
 #ifdef POCKETRAY_HAVE_ACCURACY
 #include "app/accuracy/accuracy_command.h"
-#include "viewer/reference/reference_view.h"
+#include "desktop/reference_view/reference_view.h"
 #endif
 #ifdef POCKETRAY_HAVE_MPI
 #include "app/mpi/team_mpi.h"

@@ -22,14 +22,13 @@ pocketray_result refuse(pocketray_result result, const Status& status) {
   return result;
 }
 
-Status check_struct(const char* name, const void* structure, std::size_t first_size, std::size_t size) {
-  CHECK_LE(first_size, size);
+Status check_struct(const char* name, const void* structure, std::size_t size) {
   if (!structure) return failure("%s is a null pointer", name);
   std::size_t given;
   std::memcpy(&given, structure, sizeof given);
-  if (given >= first_size && given <= size) return success();
-  return failure("%s->struct_size is %zu, this library supports %zu … %zu: initialise it with the structure's _INIT",
-                 name, given, first_size, size);
+  if (given == size) return success();
+  return failure("%s->struct_size is %zu, this library's is %zu: initialise it with the structure's _INIT", name, given,
+                 size);
 }
 
 Status check_instance(const pocketray_instance* instance) {
@@ -41,22 +40,6 @@ Status check_choice(const char* name, int value, int choice_count) {
   CHECK_GT(choice_count, 0);
   if (value >= 0 && value < choice_count) return success();
   return failure("%s is %d: it must lie in 0 … %d", name, value, choice_count - 1);
-}
-
-Status read_settings(const pocketray_settings& given, Settings* settings) {
-  RETURN_IF_ERROR(check_limit(Quantity::samples, given.samples_per_pixel));
-  RETURN_IF_ERROR(check_limit(Quantity::depth, given.ray_depth));
-  RETURN_IF_ERROR(check_limit(Quantity::area_light_points, given.points_per_area_light));
-  RETURN_IF_ERROR(check_limit(Quantity::cut_off, static_cast<double>(given.cut_off_levels)));
-  RETURN_IF_ERROR(check_choice("texture_filter", given.texture_filter, 5));
-  RETURN_IF_ERROR(check_choice("normals", given.normals, 2));
-  settings->samples_per_pixel = static_cast<std::uint32_t>(given.samples_per_pixel);
-  settings->ray_depth = static_cast<std::uint32_t>(given.ray_depth);
-  settings->points_per_area_light = static_cast<std::uint32_t>(given.points_per_area_light);
-  settings->cut_off_levels = given.cut_off_levels;
-  settings->texture_filter = static_cast<TextureFilter>(given.texture_filter);
-  settings->normals = static_cast<NormalMode>(given.normals);
-  return success();
 }
 
 Status read_camera(const pocketray_camera* given, const Settings& settings, Camera* camera) {

@@ -30,24 +30,23 @@ inline pocketray_result to_result(const Status& status, pocketray_result result)
   return status.ok ? POCKETRAY_OK : refuse(result, status);
 }
 
-// Checks that a caller's structure is readable: not null, and of a size that this library knows. Structures of earlier
-// versions end after the fields that those versions had, `first_size` at least.
-Status check_struct(const char* name, const void* structure, std::size_t first_size, std::size_t size);
+// Checks that a caller's structure is readable: not null, and of this library's size. A field added at the end of one,
+// in a version with the same minor number, must accept the size before it, too.
+Status check_struct(const char* name, const void* structure, std::size_t size);
 
-// Copies a caller's structure over the defaults in *result.
+// Copies a caller's structure.
 template <class T>
-Status read_struct(const char* name, const T* given, T* result, std::size_t first_size = sizeof(T)) {
-  RETURN_IF_ERROR(check_struct(name, given, first_size, sizeof(T)));
-  __builtin_memcpy(static_cast<void*>(result), given, given->struct_size);
-  result->struct_size = sizeof(T);
+Status read_struct(const char* name, const T* given, T* result) {
+  RETURN_IF_ERROR(check_struct(name, given, sizeof(T)));
+  *result = *given;
   return success();
 }
-// Copies a structure into a caller's, up to the caller's size.
+// Copies a structure into a caller's.
 template <class T>
-Status write_struct(const char* name, T value, T* given, std::size_t first_size = sizeof(T)) {
-  RETURN_IF_ERROR(check_struct(name, given, first_size, sizeof(T)));
-  value.struct_size = given->struct_size;
-  __builtin_memcpy(static_cast<void*>(given), &value, given->struct_size);
+Status write_struct(const char* name, T value, T* given) {
+  RETURN_IF_ERROR(check_struct(name, given, sizeof(T)));
+  value.struct_size = sizeof(T);
+  *given = value;
   return success();
 }
 
@@ -57,8 +56,9 @@ Status check_choice(const char* name, int value, int choice_count);  // 0 … ch
 inline Vec3 to_vec3(const float* v) { return {v[0], v[1], v[2]}; }
 inline void from_vec3(const Vec3& v, float* result) { result[0] = v.x, result[1] = v.y, result[2] = v.z; }
 
-// Reads a caller's quality settings into *settings and checks their ranges.
-Status read_settings(const pocketray_settings& given, Settings* settings);
+// Reads the settings in a caller's list into *settings and checks them.
+Status read_settings(const pocketray_settings* given, Settings* settings);
+void write_settings(const Settings& settings, pocketray_settings* result);
 // Fails whenever make_camera_rays() would.
 Status read_camera(const pocketray_camera* given, const Settings& settings, Camera* camera);
 

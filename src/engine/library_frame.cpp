@@ -198,8 +198,7 @@ pocketray_result pocketray_get_frame(const pocketray_instance* instance, pocketr
   result.pixels_traced =
       coherence.planned ? coherence.pixels_traced : std::uint64_t(instance->rows_done) * renderer.settings.width;
   result.whole_because = coherence.planned ? coherence.whole_because : coherence.unplanned_because;
-  return to_result(write_struct("the frame", result, frame, offsetof(pocketray_frame, pixels_traced)),
-                   POCKETRAY_ERROR_ARGUMENT);
+  return to_result(write_struct("the frame", result, frame), POCKETRAY_ERROR_ARGUMENT);
 }
 
 pocketray_result pocketray_get_row_costs(const pocketray_instance* instance, std::uint64_t* nanoseconds,

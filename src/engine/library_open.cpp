@@ -14,8 +14,7 @@
 namespace pocketray {
 namespace {
 
-static_assert(kEffectCount <= POCKETRAY_EFFECTS_MAX + POCKETRAY_FURTHER_EFFECTS_MAX, "a plan holds all effects");
-constexpr std::size_t kPlanBytesMin = offsetof(pocketray_plan, further_effect_count);  // before 0.2.2
+static_assert(kEffectCount <= POCKETRAY_EFFECTS_MAX, "a plan holds all effects");
 static_assert(kMemoryPartMax <= POCKETRAY_MEMORY_PARTS_MAX, "and all parts of the memory");
 static_assert(kNone == POCKETRAY_NONE, "no such index");
 
@@ -62,7 +61,7 @@ Status read_accelerator(const char* name, const AccelInfo** accel) {
 }
 
 Status read_options(const pocketray_options* given, Request* q) {
-  RETURN_IF_ERROR(read_struct("the options", given, &q->options, offsetof(pocketray_options, coherence)));
+  RETURN_IF_ERROR(read_struct("the options", given, &q->options));
   const pocketray_options& o = q->options;
   Settings* s = &q->settings;
   RETURN_IF_ERROR(check_limit(Quantity::width, o.width));
@@ -85,9 +84,7 @@ Status read_options(const pocketray_options* given, Request* q) {
     return failure("light_count_max is %u: at most %u lights are supported", o.light_count_max, kLightCountMax);
   if (o.part_count > kNodeCountMax) return failure("%u parts, at most %u are supported", o.part_count, kNodeCountMax);
   if (o.part_count && !o.parts) return failure("parts is a null pointer, part_count is %u", o.part_count);
-  pocketray_settings settings = POCKETRAY_SETTINGS_INIT;
-  if (o.settings) RETURN_IF_ERROR(read_struct("the settings", o.settings, &settings));
-  RETURN_IF_ERROR(read_settings(settings, s));
+  if (o.settings) RETURN_IF_ERROR(read_settings(o.settings, s));
   if (o.camera) RETURN_IF_ERROR(read_camera(o.camera, *s, &q->camera));
   RETURN_IF_ERROR(read_effects(o.effects, s));
   return read_accelerator(o.accelerator, &q->accel);
@@ -313,10 +310,9 @@ void write_plan(const Renderer& renderer, std::size_t scratch_bytes, pocketray_p
   plan->frame_count = scene.info.frame_count;
   plan->frames_per_second = scene.info.frames_per_second;
   plan->duration_seconds = scene.animations.count ? static_cast<double>(scene.animations[0].duration) : 0;
+  plan->effect_count = kEffectCount;
   for (int i = 0; i < kEffectCount; ++i) {
-    const bool is_further = i >= POCKETRAY_EFFECTS_MAX;
-    pocketray_effect* e = is_further ? &plan->further_effects[i - POCKETRAY_EFFECTS_MAX] : &plan->effects[i];
-    ++(is_further ? plan->further_effect_count : plan->effect_count);
+    pocketray_effect* e = &plan->effects[i];
     const EffectDecision& d = renderer.effects.decisions[i];
     e->name = kEffectList[i].name;
     e->called_for_by = kEffectList[i].called_for_by;
@@ -335,7 +331,7 @@ using namespace pocketray;
 
 pocketray_result pocketray_make_plan(const pocketray_source* source, const pocketray_options* options, void* scratch,
                                      std::size_t scratch_bytes, pocketray_plan* plan) {
-  Status sized = check_struct("the plan", plan, kPlanBytesMin, sizeof *plan);
+  Status sized = check_struct("the plan", plan, sizeof *plan);
   if (!sized.ok) return refuse(POCKETRAY_ERROR_ARGUMENT, sized);
   Request q;
   Status status = read_request(source, options, &q);
@@ -358,7 +354,7 @@ pocketray_result pocketray_make_plan(const pocketray_source* source, const pocke
   if (planned != POCKETRAY_OK) return planned;
   pocketray_plan made;
   write_plan(renderer, need, &made);
-  return to_result(write_struct("the plan", made, plan, kPlanBytesMin), POCKETRAY_ERROR_ARGUMENT);
+  return to_result(write_struct("the plan", made, plan), POCKETRAY_ERROR_ARGUMENT);
 }
 
 pocketray_result pocketray_open(const pocketray_source* source, const pocketray_options* options, void* memory,
@@ -383,5 +379,5 @@ pocketray_result pocketray_get_plan(const pocketray_instance* instance, pocketra
   if (!status.ok) return refuse(POCKETRAY_ERROR_ARGUMENT, status);
   pocketray_plan made;
   write_plan(instance->renderer, 0, &made);
-  return to_result(write_struct("the plan", made, plan, kPlanBytesMin), POCKETRAY_ERROR_ARGUMENT);
+  return to_result(write_struct("the plan", made, plan), POCKETRAY_ERROR_ARGUMENT);
 }

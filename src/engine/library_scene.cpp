@@ -94,23 +94,15 @@ using namespace pocketray;
 
 pocketray_result pocketray_get_settings(const pocketray_instance* instance, pocketray_settings* settings) {
   REFUSE_IF_ERROR(POCKETRAY_ERROR_ARGUMENT, check_instance(instance));
-  const Settings& s = instance->renderer.settings;
-  pocketray_settings result = POCKETRAY_SETTINGS_INIT;
-  result.samples_per_pixel = static_cast<int>(s.samples_per_pixel);
-  result.ray_depth = static_cast<int>(s.ray_depth);
-  result.points_per_area_light = static_cast<int>(s.points_per_area_light);
-  result.cut_off_levels = s.cut_off_levels;
-  result.texture_filter = static_cast<int>(s.texture_filter);
-  result.normals = static_cast<int>(s.normals);
+  pocketray_settings result;
+  write_settings(instance->renderer.settings, &result);
   return to_result(write_struct("the settings", result, settings), POCKETRAY_ERROR_ARGUMENT);
 }
 
 pocketray_result pocketray_set_settings(pocketray_instance* instance, const pocketray_settings* settings) {
   REFUSE_IF_ERROR(POCKETRAY_ERROR_ARGUMENT, check_instance(instance));
-  pocketray_settings given = POCKETRAY_SETTINGS_INIT;
-  REFUSE_IF_ERROR(POCKETRAY_ERROR_ARGUMENT, read_struct("the settings", settings, &given));
   Settings changed = instance->renderer.settings;
-  REFUSE_IF_ERROR(POCKETRAY_ERROR_ARGUMENT, read_settings(given, &changed));
+  REFUSE_IF_ERROR(POCKETRAY_ERROR_ARGUMENT, read_settings(settings, &changed));
   return to_result(plan_again(instance, changed), POCKETRAY_ERROR_LIMIT);
 }
 

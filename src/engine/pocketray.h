@@ -35,8 +35,8 @@
 #include <stdint.h>
 
 #define POCKETRAY_VERSION_MAJOR 0
-#define POCKETRAY_VERSION_MINOR 2
-#define POCKETRAY_VERSION_PATCH 2
+#define POCKETRAY_VERSION_MINOR 3
+#define POCKETRAY_VERSION_PATCH 0
 #define POCKETRAY_VERSION_NUMBER \
   (POCKETRAY_VERSION_MAJOR * 65536u + POCKETRAY_VERSION_MINOR * 256u + POCKETRAY_VERSION_PATCH)
 
@@ -85,29 +85,39 @@ typedef struct pocketray_source {
 #define POCKETRAY_SOURCE_INIT \
   { sizeof(pocketray_source), NULL, NULL, 0, 0 }
 
-/* Nearest and bilinear read only full-size texels. As the scene: trilinear where a texture has smaller levels.
-   Anisotropic: sharper at grazing angles. */
-enum {
-  POCKETRAY_FILTER_AS_SCENE = 0,
-  POCKETRAY_FILTER_NEAREST = 1,
-  POCKETRAY_FILTER_BILINEAR = 2,
-  POCKETRAY_FILTER_TRILINEAR = 3,
-  POCKETRAY_FILTER_ANISOTROPIC = 4
-};
-enum { POCKETRAY_NORMALS_AS_SCENE = 0, POCKETRAY_NORMALS_FLAT = 1 };
-
-/* Settings that trade accuracy for time; may change between frames. */
+/* Settings that trade accuracy for time, by the names, ranges and defaults of the program's options: "samples",
+ * "depth", "virtual-lights", "reconstruction", …; `pocketray render --help-all` explains them. They may change between
+ * frames. Filled by pocketray_set_number() and pocketray_set_choice(); settings that are not in the list have their
+ * defaults when a scene is opened, and stay as they are in pocketray_set_settings(). */
+#define POCKETRAY_SETTINGS_MAX 32
 typedef struct pocketray_settings {
   size_t struct_size;
-  int samples_per_pixel;     /* 1 … 16 */
-  int ray_depth;             /* reflections and refractions along a path, 0 … 16 */
-  int points_per_area_light; /* 1 … 256; memory is reserved for the number given to pocketray_open() */
-  float cut_off_levels;      /* largest error per sample from skipped rays, in display levels, 0 … 64 */
-  int texture_filter;        /* POCKETRAY_FILTER_… */
-  int normals;               /* POCKETRAY_NORMALS_… */
+  uint32_t count;
+  uint32_t reserved;
+  struct {
+    const char* name; /* never freed */
+    double value;     /* of a choice: its index */
+  } list[POCKETRAY_SETTINGS_MAX];
 } pocketray_settings;
-#define POCKETRAY_SETTINGS_INIT \
-  { sizeof(pocketray_settings), 1, 8, 4, 0.5f, 0, 0 }
+#define POCKETRAY_SETTINGS_INIT         \
+  {                                     \
+    sizeof(pocketray_settings), 0, 0, { \
+      { NULL, 0 }                       \
+    }                                   \
+  }
+
+/* Names of the settings, 0 upward; null beyond the last one. */
+POCKETRAY_API const char* pocketray_setting_name(uint32_t index);
+/* Names of a setting's choices, 0 upward; null beyond the last one, and for a setting that is a number. */
+POCKETRAY_API const char* pocketray_choice_name(const char* setting, uint32_t index);
+
+/* Puts a setting into the list, or replaces it there. POCKETRAY_ERROR_ARGUMENT: there is no such setting or choice, or
+ * the number is out of range. */
+POCKETRAY_API pocketray_result pocketray_set_number(pocketray_settings* settings, const char* name, double value);
+POCKETRAY_API pocketray_result pocketray_set_choice(pocketray_settings* settings, const char* name, const char* choice);
+/* Stores the value in the list, otherwise the default; of a choice its index. */
+POCKETRAY_API pocketray_result pocketray_get_number(const pocketray_settings* settings, const char* name,
+                                                    double* value);
 
 enum { POCKETRAY_PERSPECTIVE = 0, POCKETRAY_ORTHOGRAPHIC = 1 };
 
@@ -139,7 +149,7 @@ typedef struct pocketray_options {
   int width, height;                  /* pixels, 1 … 8192 */
   int threads;                        /* tracing threads, including the caller's: 1 … 64 */
   int measure_exposure;               /* 1: measure it on the first picture, even if the scene states one */
-  const pocketray_settings* settings; /* null: POCKETRAY_SETTINGS_INIT */
+  const pocketray_settings* settings; /* null: the defaults */
   const pocketray_camera* camera;     /* null: the scene's camera `camera_index` */
   uint32_t camera_index;
   uint32_t light_count_max;    /* reserve memory for pocketray_set_lights(); 0: lights are fixed */
@@ -147,12 +157,10 @@ typedef struct pocketray_options {
   const char* accelerator;     /* "bvh", "compact", "grid", …; null: the file's, or the fastest that fits */
   const pocketray_part* parts; /* of a scene without animation: each becomes a node, in this order */
   uint32_t part_count;
-  int movable; /* 1: reserve memory for pocketray_set_node() on the nodes of an animated scene */
-  /* Since 0.2.1 */
+  int movable;         /* 1: reserve memory for pocketray_set_node() on the nodes of an animated scene */
   int coherence;       /* POCKETRAY_COHERENCE_… */
   int coherence_table; /* side of the tables of rays behind mirrors and glass, in blocks of pixels, 1 … 1024 */
-  /* Since 0.2.2 */
-  int recolorable; /* 1: reserve memory for pocketray_set_material() */
+  int recolorable;     /* 1: reserve memory for pocketray_set_material() */
   int reserved;
 } pocketray_options;
 #define POCKETRAY_OPTIONS_INIT \
@@ -170,8 +178,7 @@ typedef struct pocketray_memory_part {
   size_t bytes;
 } pocketray_memory_part;
 
-#define POCKETRAY_EFFECTS_MAX 32
-#define POCKETRAY_FURTHER_EFFECTS_MAX 32
+#define POCKETRAY_EFFECTS_MAX 128
 #define POCKETRAY_MEMORY_PARTS_MAX 16
 
 /* The plan for a scene, options and settings. */
@@ -188,9 +195,6 @@ typedef struct pocketray_plan {
   uint32_t effect_count, memory_part_count;
   pocketray_effect effects[POCKETRAY_EFFECTS_MAX];
   pocketray_memory_part memory_parts[POCKETRAY_MEMORY_PARTS_MAX];
-  /* Since 0.2.2: effects beyond POCKETRAY_EFFECTS_MAX */
-  uint32_t further_effect_count;
-  pocketray_effect further_effects[POCKETRAY_FURTHER_EFFECTS_MAX];
 } pocketray_plan;
 
 /* Plans without rendering: which effects are simulated and why, and how much memory pocketray_open() needs with the
@@ -213,7 +217,8 @@ POCKETRAY_API void pocketray_close(pocketray_instance* instance);
 /* The plan, including changes made since. plan->struct_size must be set. */
 POCKETRAY_API pocketray_result pocketray_get_plan(const pocketray_instance* instance, pocketray_plan* plan);
 
-/* Settings for the next frames. POCKETRAY_ERROR_LIMIT: the area lights need more points than were reserved. */
+/* Settings for the next frames. Get: all of them. POCKETRAY_ERROR_LIMIT: one needs memory that was not reserved when
+ * the scene was opened, as for more points per area light, or for a method of indirect light. */
 POCKETRAY_API pocketray_result pocketray_get_settings(const pocketray_instance* instance, pocketray_settings* settings);
 POCKETRAY_API pocketray_result pocketray_set_settings(pocketray_instance* instance, const pocketray_settings* settings);
 
@@ -247,7 +252,7 @@ POCKETRAY_API pocketray_result pocketray_get_lights(const pocketray_instance* in
 POCKETRAY_API pocketray_result pocketray_set_lights(pocketray_instance* instance, const pocketray_light* lights,
                                                     uint32_t light_count);
 
-/* The colours of a material, 0 … 1 each unless stated otherwise, and its texture. Since 0.2.2. */
+/* The colours of a material, 0 … 1 each unless stated otherwise, and its texture. */
 typedef struct pocketray_material {
   size_t struct_size;
   float diffuse[3];                           /* albedo; × texture × vertex colour */
@@ -371,7 +376,7 @@ typedef struct pocketray_frame {
   double pose_ms, refit_ms, trace_ms;
   uint64_t ray_count, rays_skipped; /* rays_skipped: could not have changed a display level */
   uint32_t rows_done, row_count;    /* of a frame being refined: rows of its finest grid */
-  /* Since 0.2.1, for the last frame of pocketray_render(): */
+  /* Of the last frame of pocketray_render(): */
   uint64_t pixels_traced;
   const char* whole_because; /* why it was traced whole; never freed; null: only possible changes were traced */
 } pocketray_frame;

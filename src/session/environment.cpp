@@ -6,7 +6,7 @@
 #include "plan/plan_scene.h"
 #include "session/scene_options.h"
 #ifdef POCKETRAY_HAVE_IMPORT
-#include "import/environment.h"
+#include "session/environment_import.h"
 #endif
 
 namespace pocketray {

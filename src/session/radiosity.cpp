@@ -13,7 +13,7 @@
 #include "session/interrupt.h"
 #include "session/progress.h"
 #ifdef POCKETRAY_HAVE_RADIOSITY
-#include "radiosity/solve.h"
+#include "session/radiosity_solver.h"
 #endif
 
 namespace pocketray {

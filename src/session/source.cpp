@@ -11,7 +11,7 @@
 #include "scene/builtin/builtin.h"
 #include "session/environment.h"
 #ifdef POCKETRAY_HAVE_IMPORT
-#include "import/environment.h"
+#include "session/environment_import.h"
 #endif
 
 namespace pocketray {

@@ -1,4 +1,4 @@
-// Loads a scene: a built-in one, a .pray file used as it is, or any format that import/ reads.
+// Loads a scene: a built-in one, a .pray file used as it is, or any format that desktop/import/ reads.
 #pragma once
 #include <functional>
 #include <string>
@@ -7,13 +7,9 @@
 
 #include "engine/renderer.h"
 #include "scene/content_hash.h"
-#ifdef POCKETRAY_HAVE_IMPORT
-#include "import/import.h"
-#endif
+#include "session/model_import.h"
 
 namespace pocketray {
-
-using NamedBoxes = std::vector<std::pair<std::string, Box>>;
 
 // How to read a model; see ImportOptions.
 struct ReadingChoice {

@@ -1,5 +1,5 @@
 // Reading the output of callgrind.
-#include "accuracy/callgrind.h"
+#include "desktop/accuracy/callgrind.h"
 
 #include <doctest/doctest.h>
 

@@ -1,5 +1,5 @@
 // Covering sets.
-#include "accuracy/covering.h"
+#include "desktop/accuracy/covering.h"
 
 #include <doctest/doctest.h>
 

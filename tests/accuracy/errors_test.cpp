@@ -1,5 +1,5 @@
 // Errors of pictures.
-#include "accuracy/errors.h"
+#include "desktop/accuracy/errors.h"
 
 #include <doctest/doctest.h>
 

@@ -1,5 +1,5 @@
 // Conclusions from a sweep.
-#include "accuracy/findings.h"
+#include "desktop/accuracy/findings.h"
 
 #include <doctest/doctest.h>
 

@@ -7,7 +7,7 @@
 #include <sstream>
 #include <string>
 
-#include "accuracy/flip.h"
+#include "desktop/accuracy/flip.h"
 #ifdef POCKETRAY_HAVE_PNG
 #include <png.h>
 #endif

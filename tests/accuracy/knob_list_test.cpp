@@ -1,5 +1,5 @@
 // The knobs: properties of every row, including future ones.
-#include "accuracy/knob_list.h"
+#include "desktop/accuracy/knob_list.h"
 
 #include <doctest/doctest.h>
 

@@ -1,5 +1,5 @@
 // The page, and the report as a whole.
-#include "accuracy/page.h"
+#include "desktop/accuracy/page.h"
 
 #include <doctest/doctest.h>
 #include <unistd.h>
@@ -10,8 +10,8 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include "accuracy/report.h"
-#include "accuracy/text.h"
+#include "desktop/accuracy/report.h"
+#include "desktop/accuracy/text.h"
 #include "sample_sweep.h"
 
 using namespace pocketray;

@@ -1,14 +1,14 @@
 // Plots as scripts: their points, axes and labels.
-#include "accuracy/plot.h"
+#include "desktop/accuracy/plot.h"
 
 #include <doctest/doctest.h>
 
 #include <cmath>
 
-#include "accuracy/findings.h"
-#include "accuracy/gnuplot.h"
-#include "accuracy/plot_axis.h"
 #include "base/rng.h"
+#include "desktop/accuracy/findings.h"
+#include "desktop/accuracy/gnuplot.h"
+#include "desktop/accuracy/plot_axis.h"
 #include "sample_sweep.h"
 
 using namespace pocketray;

@@ -2,7 +2,7 @@
 #pragma once
 #include <cmath>
 
-#include "accuracy/result.h"
+#include "desktop/accuracy/result.h"
 
 namespace pocketray {
 

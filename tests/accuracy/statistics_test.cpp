@@ -1,5 +1,5 @@
 // Statistics of measurements.
-#include "accuracy/statistics.h"
+#include "desktop/accuracy/statistics.h"
 
 #include <doctest/doctest.h>
 

@@ -1,5 +1,5 @@
 // Strips of settings beside the reference.
-#include "accuracy/strip.h"
+#include "desktop/accuracy/strip.h"
 
 #include <doctest/doctest.h>
 

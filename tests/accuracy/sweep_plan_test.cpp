@@ -1,5 +1,5 @@
 // The plan of a sweep and the summary of its figures.
-#include "accuracy/sum_up.h"
+#include "desktop/accuracy/sum_up.h"
 
 #include <doctest/doctest.h>
 
@@ -10,8 +10,8 @@
 #include <map>
 #include <set>
 
-#include "accuracy/csv.h"
 #include "base/rng.h"
+#include "desktop/accuracy/csv.h"
 #include "effect/setting_list.h"
 #include "support/effort.h"
 
@@ -122,8 +122,7 @@ TEST_CASE("sweep_plan_measures_a_ladder_beside_the_knobs") {
   int front = 0, others = 0;
   for (std::size_t i = 0; i < plan.points.size(); ++i) {
     const Configuration& c = plan.points[i].configuration;
-    bool is_choice = c.output == baseline.output && c.sphere_columns == baseline.sphere_columns &&
-                     !c.near_lossless;
+    bool is_choice = c.output == baseline.output && c.sphere_columns == baseline.sphere_columns && !c.near_lossless;
     CHECK(plan.points[i].is_choice == is_choice);
     front += sweep.measured[i].pareto && is_choice, others += sweep.measured[i].pareto && !is_choice;
   }

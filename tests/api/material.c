@@ -91,11 +91,11 @@ static void lamps_are_dimmed(void) {
   EXPECT_OK(pocketray_set_material(instance, kLamp, &changed));
   api_render(instance, 0, &off);
   EXPECT(dim.pixel[40][20] != lit.pixel[40][20] && off.pixel[40][20] != dim.pixel[40][20]);
-  settings.points_per_area_light = 2;
+  EXPECT_OK(pocketray_set_number(&settings, "area-lights", 2));
   EXPECT_OK(pocketray_set_settings(instance, &settings));
   api_render(instance, 0, &again);
   EXPECT(api_same(&off, &again));
-  settings.points_per_area_light = 4;
+  EXPECT_OK(pocketray_set_number(&settings, "area-lights", 4));
   EXPECT_OK(pocketray_set_settings(instance, &settings));
   EXPECT_OK(pocketray_set_material(instance, kLamp, &lamp));
   api_render(instance, 0, &again);
@@ -351,22 +351,6 @@ static void coherence_is_chosen_for_materials(void) {
   pocketray_close(instance);
 }
 
-/* A program built with the header of 0.2.1 has shorter options. */
-static void structures_of_0_2_1_are_accepted(void) {
-  static api_picture picture;
-  pocketray_options options = api_options();
-  pocketray_instance* instance;
-  pocketray_material m;
-  EXPECT(offsetof(pocketray_options, recolorable) % sizeof(void*) == 0); /* nothing unset before it */
-  options.struct_size = offsetof(pocketray_options, recolorable);
-  options.recolorable = options.reserved = 77; /* beyond its end */
-  instance = api_open("cube", &options, 0);
-  api_render(instance, 0, &picture);
-  m = material_of(instance, 1);
-  refused(instance, 1, &m, POCKETRAY_ERROR_LIMIT, "recolorable");
-  pocketray_close(instance);
-}
-
 const api_case api_material_cases[] = {
     {"colours_change_and_return", colours_change_and_return},
     {"lamps_are_dimmed", lamps_are_dimmed},
@@ -377,6 +361,5 @@ const api_case api_material_cases[] = {
     {"a_change_ends_a_frame_in_progress", a_change_ends_a_frame_in_progress},
     {"coherence_follows_materials", coherence_follows_materials},
     {"coherence_is_chosen_for_materials", coherence_is_chosen_for_materials},
-    {"structures_of_0_2_1_are_accepted", structures_of_0_2_1_are_accepted},
     {NULL, NULL},
 };

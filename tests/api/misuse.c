@@ -214,24 +214,41 @@ static void null_results_and_short_ones(pocketray_instance* instance) {
   wrong("frame", pocketray_get_frame(instance, &frame), "struct_size");
 }
 
+/* Of what the library sets, and of lists that a caller wrote. */
 static void odd_settings(pocketray_instance* instance) {
-  pocketray_settings s;
-#define WRONG(change, part)                             \
-  {                                                     \
-    pocketray_settings usual = POCKETRAY_SETTINGS_INIT; \
-    s = usual;                                          \
-  }                                                     \
-  change;                                               \
-  wrong(#change, pocketray_set_settings(instance, &s), part)
-  WRONG(s.samples_per_pixel = 0, "samples per pixel is 0");
-  WRONG(s.samples_per_pixel = -3, "samples per pixel is -3");
-  WRONG(s.ray_depth = 17, "depth");
-  WRONG(s.points_per_area_light = 257, "area light is 257");
-  WRONG(s.cut_off_levels = NAN, "cut-off");
-  WRONG(s.cut_off_levels = -1, "cut-off");
-  WRONG(s.texture_filter = 5, "texture_filter is 5");
-  WRONG(s.normals = -1, "normals is -1");
-#undef WRONG
+  pocketray_settings s = POCKETRAY_SETTINGS_INIT;
+  pocketray_options options = api_options();
+  pocketray_source source = api_builtin("cube");
+  double value;
+  wrong("samples", pocketray_set_number(&s, "samples", 0), "samples per pixel is 0");
+  wrong("samples", pocketray_set_number(&s, "samples", -3), "samples per pixel is -3");
+  wrong("samples", pocketray_set_number(&s, "samples", 1.5), "whole number");
+  wrong("depth", pocketray_set_number(&s, "depth", 17), "depth");
+  wrong("points", pocketray_set_number(&s, "area-lights", 257), "area light is 257");
+  wrong("cut-off", pocketray_set_number(&s, "cut-off", (double)NAN), "cut-off");
+  wrong("cut-off", pocketray_set_number(&s, "cut-off", -1), "cut-off");
+  wrong("filter", pocketray_set_number(&s, "texture-filter", 5), "texture-filter is 5");
+  wrong("normals", pocketray_set_choice(&s, "normals", "round"), "scene or flat");
+  wrong("number", pocketray_set_choice(&s, "samples", "four"), "pocketray_set_number");
+  wrong("name", pocketray_set_number(&s, "sample", 1), "no setting 'sample'");
+  wrong("name", pocketray_set_choice(&s, NULL, "flat"), "null");
+  wrong("choice", pocketray_set_choice(&s, "normals", NULL), "null");
+  wrong("value", pocketray_get_number(&s, "samples", NULL), "null");
+  wrong("settings", pocketray_set_number(NULL, "samples", 1), "null");
+  EXPECT(s.count == 0 && s.list[0].name == NULL);
+  s.count = 1;
+  wrong("no name", pocketray_set_settings(instance, &s), "null");
+  s.list[0].name = "samples", s.list[0].value = 99;
+  wrong("value", pocketray_set_settings(instance, &s), "samples per pixel is 99");
+  options.settings = &s;
+  wrong_open("value", &source, &options, "samples per pixel is 99");
+  s.list[0].name = "bounces";
+  wrong("name", pocketray_set_settings(instance, &s), "no setting 'bounces'");
+  s.count = POCKETRAY_SETTINGS_MAX;
+  wrong("full", pocketray_set_number(&s, "samples", 1), "POCKETRAY_SETTINGS_INIT");
+  s.count = POCKETRAY_SETTINGS_MAX + 1;
+  wrong("count", pocketray_set_settings(instance, &s), "count is 33");
+  wrong("count", pocketray_get_number(&s, "samples", &value), "count is 33");
 }
 
 static void odd_cameras(pocketray_instance* instance) {

@@ -6,21 +6,27 @@ static void settings_are_those_of_opening(void) {
   pocketray_settings settings = POCKETRAY_SETTINGS_INIT, read = POCKETRAY_SETTINGS_INIT;
   pocketray_options options = api_options();
   pocketray_instance* instance = api_open("cornell", NULL, 0);
+  uint32_t i;
   api_render(instance, 0, &first);
-  settings.samples_per_pixel = 4;
-  settings.ray_depth = 2;
-  settings.points_per_area_light = 3;
-  settings.cut_off_levels = 0;
-  settings.normals = POCKETRAY_NORMALS_FLAT;
-  settings.texture_filter = POCKETRAY_FILTER_NEAREST;
+  EXPECT_OK(pocketray_set_number(&settings, "samples", 4));
+  EXPECT_OK(pocketray_set_number(&settings, "depth", 2));
+  EXPECT_OK(pocketray_set_number(&settings, "area-lights", 3));
+  EXPECT_OK(pocketray_set_number(&settings, "cut-off", 0));
+  EXPECT_OK(pocketray_set_choice(&settings, "normals", "flat"));
+  EXPECT_OK(pocketray_set_choice(&settings, "texture-filter", "nearest"));
   EXPECT_OK(pocketray_set_settings(instance, &settings));
   EXPECT_OK(pocketray_get_settings(instance, &read));
-  EXPECT(memcmp(&settings, &read, sizeof read) == 0);
+  for (i = 0; i < settings.count; ++i) {
+    double value = -1;
+    EXPECT_OK(pocketray_get_number(&read, settings.list[i].name, &value));
+    EXPECT(value == settings.list[i].value);
+  }
   api_render(instance, 0, &changed);
   EXPECT(!api_same(&first, &changed));
-  settings.points_per_area_light = 256;
+  EXPECT_OK(pocketray_set_number(&settings, "area-lights", 256));
   EXPECT(pocketray_set_settings(instance, &settings) == POCKETRAY_ERROR_LIMIT);
-  settings.points_per_area_light = 3;
+  EXPECT_OK(pocketray_set_number(&settings, "area-lights", 3));
+  EXPECT(settings.count == 6);
   api_render(instance, 0, &again);
   EXPECT(api_same(&changed, &again));
   pocketray_close(instance);
@@ -28,6 +34,54 @@ static void settings_are_those_of_opening(void) {
   instance = api_open("cornell", &options, 0);
   api_render(instance, 0, &opened);
   EXPECT(api_same(&changed, &opened));
+  pocketray_close(instance);
+}
+
+/* Each has a name, a default and a value that the library takes back; those not in a list stay as they are. */
+static void every_setting_has_a_name(void) {
+  pocketray_settings none = POCKETRAY_SETTINGS_INIT, read, one = POCKETRAY_SETTINGS_INIT;
+  pocketray_instance* instance = api_open("cube", NULL, 0);
+  uint32_t count = 0, choices = 0;
+  double value, initial;
+  EXPECT_OK(pocketray_set_number(&one, "samples", 2));
+  EXPECT_OK(pocketray_set_settings(instance, &one));
+  EXPECT_OK(pocketray_set_settings(instance, &none));
+  read = none;
+  EXPECT_OK(pocketray_get_settings(instance, &read));
+  for (; pocketray_setting_name(count); ++count) {
+    const char* name = pocketray_setting_name(count);
+    EXPECT_OK(pocketray_get_number(&none, name, &initial));
+    EXPECT_OK(pocketray_get_number(&read, name, &value));
+    EXPECT(value == (strcmp(name, "samples") == 0 ? 2 : initial));
+    EXPECT_OK(pocketray_set_number(&read, name, initial));
+    if (!pocketray_choice_name(name, 0)) continue;
+    ++choices;
+    EXPECT_OK(pocketray_set_choice(&read, name, pocketray_choice_name(name, 0)));
+    EXPECT_OK(pocketray_get_number(&read, name, &value));
+    EXPECT(value == 0 && !pocketray_choice_name(name, 1000));
+  }
+  EXPECT(count == read.count && count > 10 && choices > 4 && choices < count);
+  EXPECT(!pocketray_setting_name(count) && !pocketray_choice_name("samples", 0) && !pocketray_choice_name(NULL, 0));
+  pocketray_close(instance);
+}
+
+/* A setting that only the list of names has: more virtual lights give another picture. */
+static void instant_radiosity_is_set_by_name(void) {
+  static api_picture ambient, few, many;
+  pocketray_settings settings = POCKETRAY_SETTINGS_INIT;
+  pocketray_options options = api_options();
+  pocketray_instance* instance = api_open("cornell", NULL, 0);
+  api_render(instance, 0, &ambient);
+  pocketray_close(instance);
+  EXPECT_OK(pocketray_set_choice(&settings, "indirect", "instant-radiosity"));
+  EXPECT_OK(pocketray_set_number(&settings, "virtual-lights", 128));
+  options.settings = &settings;
+  instance = api_open("cornell", &options, 0);
+  api_render(instance, 0, &many);
+  EXPECT_OK(pocketray_set_number(&settings, "virtual-lights", 16));
+  EXPECT_OK(pocketray_set_settings(instance, &settings));
+  api_render(instance, 0, &few);
+  EXPECT(!api_same(&ambient, &many) && !api_same(&few, &many));
   pocketray_close(instance);
 }
 
@@ -71,8 +125,6 @@ static int effect_is_on(const pocketray_instance* instance, const char* name) {
   EXPECT_OK(pocketray_get_plan(instance, &plan));
   for (i = 0; i < plan.effect_count; ++i)
     if (strcmp(plan.effects[i].name, name) == 0) return plan.effects[i].on;
-  for (i = 0; i < plan.further_effect_count; ++i)
-    if (strcmp(plan.further_effects[i].name, name) == 0) return plan.further_effects[i].on;
   return -1;
 }
 
@@ -331,6 +383,8 @@ static void exposure_is_set_and_measured(void) {
 
 const api_case api_scene_cases[] = {
     {"settings_are_those_of_opening", settings_are_those_of_opening},
+    {"every_setting_has_a_name", every_setting_has_a_name},
+    {"instant_radiosity_is_set_by_name", instant_radiosity_is_set_by_name},
     {"cameras_are_set_and_read", cameras_are_set_and_read},
     {"lights_come_change_and_go", lights_come_change_and_go},
     {"lights_follow_their_node", lights_follow_their_node},

@@ -10,8 +10,8 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
-#include "coherence_report/page.h"
-#include "coherence_report/plots.h"
+#include "desktop/coherence_report/page.h"
+#include "desktop/coherence_report/plots.h"
 #include "platform/file.h"
 #include "present/png_file.h"
 #include "scene/builtin_helpers.h"

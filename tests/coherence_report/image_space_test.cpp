@@ -1,5 +1,5 @@
 // The image-space methods on pictures made up here, whose right answer is known, and on a small part of a sequence.
-#include "coherence_report/image_space_report.h"
+#include "desktop/coherence_report/image_space_report.h"
 
 #include <doctest/doctest.h>
 

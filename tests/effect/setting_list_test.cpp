@@ -11,7 +11,7 @@
 #include "plan/front.h"
 #include "plan/plan_effects.h"
 #ifdef POCKETRAY_HAVE_ACCURACY
-#include "accuracy/knob_list.h"
+#include "desktop/accuracy/knob_list.h"
 #endif
 #ifdef POCKETRAY_HAVE_NETWORK
 #include "wire/message.h"

@@ -8,8 +8,8 @@
 
 #include "base/check.h"
 #include "fuzz/fuzz.h"
-#include "import/import.h"
 #include "scene/baked_file.h"
+#include "session/model_import.h"
 
 namespace pocketray {
 namespace {

@@ -11,8 +11,8 @@
 #include "session/open_scene.h"
 
 #if defined(POCKETRAY_HAVE_ACCURACY)
-#include "accuracy/callgrind.h"
-#include "sweep/state.h"
+#include "desktop/accuracy/callgrind.h"
+#include "desktop/sweep/state.h"
 #endif
 
 POCKETRAY_FUZZ_TARGET(fuzz_text)

@@ -54,7 +54,6 @@ TEST_CASE("gltf_clear_coats_are_read") {
       load_text(triangle_gltf(coated("\"clearcoatFactor\":1,\"clearcoatNormalTexture\":{\"index\":0,\"texCoord\":1}",
                                      ",\"normalTexture\":{\"index\":0}"),
                               kTexels));
-  CHECK(imported.warning ==
-        "not used: normal textures of clear coats with texture coordinates other than the base's");
+  CHECK(imported.warning == "not used: normal textures of clear coats with texture coordinates other than the base's");
   CHECK(imported.scene.clear_coats[0].normal.texture == kNone);
 }

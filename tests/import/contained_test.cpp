@@ -6,8 +6,8 @@
 #include <thread>
 #include <vector>
 
-#include "import/contained.h"
-#include "import/import_error.h"
+#include "desktop/import/contained.h"
+#include "desktop/import/import_error.h"
 #include "import/import_testing.h"
 
 using namespace pocketray;

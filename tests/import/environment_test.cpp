@@ -1,5 +1,5 @@
 // Environments from pictures and from the sky.
-#include "import/environment.h"
+#include "desktop/import/environment.h"
 
 #include <doctest/doctest.h>
 

@@ -2,9 +2,9 @@
 #include <cmath>
 #include <vector>
 
+#include "desktop/import/origin.h"
 #include "import/gltf_writer.h"
 #include "import/import_testing.h"
-#include "import/origin.h"
 #include "scene/baked_file.h"
 #include "support/hard_case.h"
 

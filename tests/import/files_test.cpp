@@ -1,10 +1,10 @@
 // Which files an import reads.
-#include "import/files.h"
+#include "desktop/import/files.h"
 
 #include <algorithm>
 
+#include "desktop/import/import_error.h"
 #include "import/gltf_writer.h"
-#include "import/import_error.h"
 #include "import/import_testing.h"
 
 using namespace pocketray;

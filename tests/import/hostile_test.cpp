@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <vector>
 
+#include "desktop/import/scene_builder.h"
 #include "import/gltf_writer.h"
 #include "import/import_testing.h"
-#include "import/scene_builder.h"
 
 using namespace pocketray;
 

@@ -4,7 +4,7 @@
 
 #include <cstring>
 
-#include "import/image.h"
+#include "desktop/import/image.h"
 
 using namespace pocketray;
 

@@ -9,7 +9,7 @@
 #include <fstream>
 #include <string>
 
-#include "import/import.h"
+#include "session/model_import.h"
 
 namespace pocketray {
 

@@ -1,11 +1,11 @@
 // Smoothing and texture halving.
-#include "import/normals.h"
+#include "desktop/import/normals.h"
 
 #include <cmath>
 #include <cstring>
 
 #include "base/fmath.h"
-#include "import/image.h"
+#include "desktop/import/image.h"
 #include "import/import_testing.h"
 #include "support/hard_case.h"
 

@@ -1,5 +1,5 @@
 // Triangles of concave polygons (HARDCASES row 68).
-#include "import/polygon.h"
+#include "desktop/import/polygon.h"
 
 #include <chrono>
 #include <map>

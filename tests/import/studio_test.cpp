@@ -6,7 +6,7 @@
 #include "base/fmath.h"
 #include "base/rng.h"
 #include "brdf/brdf_list.h"
-#include "import/environment.h"
+#include "desktop/import/environment.h"
 #include "import/import_testing.h"
 #include "indirect/environment.h"
 #include "plan/plan_scene.h"

@@ -1,10 +1,10 @@
-#include "import/tangents.h"
+#include "desktop/import/tangents.h"
 
 #include <doctest/doctest.h>
 
 #include <cmath>
 
-#include "import/import_error.h"
+#include "desktop/import/import_error.h"
 
 using namespace pocketray;
 

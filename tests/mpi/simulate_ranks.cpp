@@ -11,11 +11,11 @@
 #include <queue>
 
 #include "base/check.h"
+#include "desktop/sweep/reference_gauge.h"
+#include "desktop/sweep/reference_share.h"
+#include "desktop/sweep/rigs.h"
 #include "session/report.h"
 #include "simulate_frames.h"
-#include "sweep/reference_gauge.h"
-#include "sweep/reference_share.h"
-#include "sweep/rigs.h"
 
 using namespace pocketray;
 

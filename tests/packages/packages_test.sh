@@ -53,7 +53,7 @@ def read(name):
     return open(f"{folder}/{name}.h").read()
 value = dict(re.findall(r"\b(k[A-Z]\w*) = (\d+)", read("device")))
 file = device.replace("-", "_")
-table = re.search(r"\b(k\w+Keys),", read(file))[1]
+table = re.search(r"\bkeys = (k\w+);", read(file))[1]
 for name in [file] + re.findall(r'"platform/devices/(\w+)\.h"', read(file)):
     keys = re.search(table + r"\[\] = {(.*?)}", read(name), re.S)
     if keys:

@@ -23,8 +23,7 @@ struct Traced {
   Resolution resolution = Resolution::full;
 };
 constexpr Traced kAll = {};
-constexpr Traced kSome[] = {
-    {0.25f, Resolution::full}, {0, Resolution::checkerboard}, {0.25f, Resolution::half}};
+constexpr Traced kSome[] = {{0.25f, Resolution::full}, {0, Resolution::checkerboard}, {0.25f, Resolution::half}};
 constexpr Traced kAllOrSome[] = {kAll, kSome[0], kSome[1], kSome[2]};
 
 Settings small_settings(const Traced& traced = kAll) {

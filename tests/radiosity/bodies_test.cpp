@@ -1,5 +1,5 @@
 // Bodies are told from sheets.
-#include "radiosity/bodies.h"
+#include "desktop/radiosity/bodies.h"
 
 #include <doctest/doctest.h>
 

@@ -1,5 +1,5 @@
 // Values on triangles that are divided: which parts there are, and what they hold.
-#include "radiosity/corners.h"
+#include "desktop/radiosity/corners.h"
 
 #include <doctest/doctest.h>
 

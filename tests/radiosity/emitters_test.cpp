@@ -64,8 +64,8 @@ TEST_CASE("hard_72_emitters_of_one_material_light_each_other") {
   }
 }
 
-// Returns the radiance of the square lamp of the next test: its emission of 4 and half of its irradiance from the floor,
-// which likewise emits 4 and reflects half. Sums over points of both, with the lamp's radiance taken as uniform.
+// Returns the radiance of the square lamp of the next test: its emission of 4 and half of its irradiance from the
+// floor, which likewise emits 4 and reflects half. Sums over points of both, with the lamp's radiance taken as uniform.
 double lamp_between_itself_and_floor() {
   constexpr int kLamp = 8, kFloor = 160;
   auto at = [](int i, int count, double size) { return ((i + .5) / count - .5) * size; };

@@ -1,5 +1,5 @@
 // Form factors with known answers: HARDCASES rows 43 to 48.
-#include "radiosity/form_factor.h"
+#include "desktop/radiosity/form_factor.h"
 
 #include <doctest/doctest.h>
 

@@ -1,5 +1,5 @@
 // Grids that are cut apart where something stands on a surface, and what it takes to find that.
-#include "radiosity/grids.h"
+#include "desktop/radiosity/grids.h"
 
 #include <doctest/doctest.h>
 

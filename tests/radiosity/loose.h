@@ -3,7 +3,7 @@
 #include <memory>
 #include <vector>
 
-#include "radiosity/solve.h"
+#include "session/radiosity_solver.h"
 #include "support/generated_scene.h"
 
 namespace pocketray {

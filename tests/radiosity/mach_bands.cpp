@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "desktop/radiosity/store_light.h"
+
 namespace pocketray {
 namespace {
 
@@ -57,6 +59,14 @@ std::vector<double> lateral_inhibition(const std::vector<double>& run) {
   return response;
 }
 
+// Returns the surfaces with every one stored by its triangles.
+Surfaces without_grids(Surfaces surfaces) {
+  surfaces.flat.clear(), surfaces.others.clear();
+  for (std::uint32_t t = 0; t < surfaces.area.size(); ++t)
+    if (surfaces.area[t] > 0) surfaces.others.push_back(t);
+  return surfaces;
+}
+
 }  // namespace
 
 BandsRig::BandsRig(bool total) : total_(total), cube_(build_builtin("cube")) {
@@ -67,6 +77,24 @@ BandsRig::BandsRig(bool total) : total_(total), cube_(build_builtin("cube")) {
     for (std::uint32_t x = 0; x < kBandsWidth; ++x) walls_.push_back(wall_at(test->renderer.frame.view.camera, x, y));
 }
 
+// As solve_radiosity(), but with direct light if `total_`, and at the corners of triangles if these are wanted.
+void BandsRig::solve(const FrameData& frame, const RadiosityOptions& options, Pieces pieces) {
+  solution_ = RadiositySolution();
+  const SolverProgress go_on = [](double) { return true; };
+  PatchSolution solved(frame);
+  Status status = solve_patches(options, go_on, &solved);
+  REQUIRE_MESSAGE(status.ok, status.message);
+  PatchLight light = light_of(solved);
+  if (total_) light.reflected = light.all;
+  const LightAt light_at = [&](const Receiver& at, std::uint32_t material, bool on_grid, std::uint32_t seed) {
+    const Vec3d gathered = gather(solved.rays, light, at, material, on_grid, seed);
+    return total_ && gathered.x >= 0 ? gathered + light_irradiance(solved.rays, at) * (1 / kPi) : gathered;
+  };
+  const Surfaces surfaces = pieces == Pieces::triangles ? without_grids(solved.surfaces) : solved.surfaces;
+  status = store_light(solved, surfaces, options, light_at, go_on, &solution_);
+  REQUIRE_MESSAGE(status.ok, status.message);
+}
+
 std::unique_ptr<TestRenderer> BandsRig::renderer(int cells, Reconstruction reconstruction, Pieces pieces) {
   if (solved_cells_ != cells || solved_pieces_ != pieces) {
     Settings settings;
@@ -74,15 +102,12 @@ std::unique_ptr<TestRenderer> BandsRig::renderer(int cells, Reconstruction recon
     auto test = make_renderer(cube_->scene, settings);
     REQUIRE(begin_frame(&test->renderer, {0}).ok);
     RadiosityOptions options;
-    options.threads = 2, options.stores_direct_light = total_;
-    options.stores_at_corners = pieces == Pieces::triangles;
+    options.threads = 2;
     // Cells are as wide as patches, over this. Longest edges of triangles are at most two cells: chosen so that these
     // are between √2 and 2 of the sides wanted.
     const double sides = pieces == Pieces::triangles ? 1.2 * cells : cells;
     options.nodes_per_patch = sides * std::sqrt(24.0 / options.patch_count) / kWallSide;
-    const Status status = solve_radiosity(
-        test->renderer.frame, options, [](double) { return true; }, &solution_);
-    REQUIRE(status.ok);
+    solve(test->renderer.frame, options, pieces);
     solved_cells_ = cells, solved_pieces_ = pieces;
   }
   Scene scene = cube_->scene;

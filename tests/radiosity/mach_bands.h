@@ -4,8 +4,8 @@
 #include <memory>
 #include <vector>
 
-#include "radiosity/solve.h"
 #include "scene/builtin_helpers.h"
+#include "session/radiosity_solver.h"
 #include "support/generated_scene.h"
 
 namespace pocketray {
@@ -49,6 +49,7 @@ class BandsRig {
   };
   void measure_line(const Picture& picture, const Picture& reference, std::size_t at, std::size_t step,
                     std::size_t count, Sums* sums, std::vector<double>* response) const;
+  void solve(const FrameData& frame, const RadiosityOptions& options, Pieces pieces);
   std::unique_ptr<TestRenderer> renderer(int cells, Reconstruction reconstruction, Pieces pieces);
 };
 

@@ -1,5 +1,5 @@
 // Patches where light is uneven or hidden.
-#include "radiosity/refine.h"
+#include "desktop/radiosity/refine.h"
 
 #include <doctest/doctest.h>
 

@@ -1,5 +1,5 @@
 // Hermite patches: HARDCASES rows 54 to 57.
-#include "radiosity/tangents.h"
+#include "desktop/radiosity/tangents.h"
 
 #include <doctest/doctest.h>
 

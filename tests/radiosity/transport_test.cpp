@@ -1,5 +1,5 @@
 // The exchange of light: HARDCASES rows 49 to 53.
-#include "radiosity/transport.h"
+#include "desktop/radiosity/transport.h"
 
 #include <doctest/doctest.h>
 

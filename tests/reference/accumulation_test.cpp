@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cstring>
 
-#include "reference/accumulation.h"
+#include "desktop/reference/accumulation.h"
 #include "reference_helpers.h"
 #include "scene/content_hash.h"
 

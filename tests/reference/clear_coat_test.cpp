@@ -3,9 +3,9 @@
 
 #include "base/fmath.h"
 #include "brdf/clear_coat.h"
+#include "desktop/reference/rendered.h"
+#include "desktop/reference/surface.h"
 #include "reference/reference_helpers.h"
-#include "reference/rendered.h"
-#include "reference/surface.h"
 #include "shade/camera.h"
 #include "support/effort.h"
 

@@ -1,12 +1,12 @@
 // The reference under environments.
-#include "reference/environment.h"
+#include "desktop/reference/environment.h"
 
 #include <doctest/doctest.h>
 
 #include "base/fmath.h"
 #include "brdf/brdf_list.h"
+#include "desktop/reference/rendered.h"
 #include "reference/reference_helpers.h"
-#include "reference/rendered.h"
 #include "support/test_environment.h"
 
 using namespace pocketray;

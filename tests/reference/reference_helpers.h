@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "reference/reference.h"
+#include "desktop/reference/reference.h"
 #include "support/generated_scene.h"
 
 namespace pocketray {

@@ -1,7 +1,7 @@
 // Light gathered by the reference, against closed forms.
 #include "base/fmath.h"
-#include "reference/light.h"
-#include "reference/optics.h"
+#include "desktop/reference/light.h"
+#include "desktop/reference/optics.h"
 #include "reference/reference_helpers.h"
 #include "scene/builtin_helpers.h"
 #include "support/effort.h"

@@ -1,5 +1,5 @@
 // The renderer's picture against the same in double precision.
-#include "reference/rendered.h"
+#include "desktop/reference/rendered.h"
 
 #include <doctest/doctest.h>
 

@@ -1,4 +1,4 @@
-#include "reference/sobol.h"
+#include "desktop/reference/sobol.h"
 
 #include <doctest/doctest.h>
 
@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "base/rng.h"
-#include "reference/samples.h"
+#include "desktop/reference/samples.h"
 #include "support/effort.h"
 
 using namespace pocketray;

@@ -6,11 +6,11 @@
 #include <cstring>
 #include <functional>
 
+#include "desktop/split_report/virtual_world.h"
 #include "engine/frame.h"
 #include "fake_server.h"
 #include "remote/server/scene_store.h"
 #include "scene/builtin_helpers.h"
-#include "split_report/virtual_world.h"
 #include "support/generated_scene.h"
 #include "support/scripted_client.h"
 

@@ -4,10 +4,10 @@
 
 #include <algorithm>
 
+#include "desktop/split_report/virtual_world.h"
 #include "engine/frame.h"
 #include "present/pack.h"
 #include "remote/client/servers.h"
-#include "split_report/virtual_world.h"
 #include "support/scripted_client.h"
 
 namespace pocketray {

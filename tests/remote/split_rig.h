@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "desktop/split_report/virtual_world.h"
 #include "remote/client/frame.h"
 #include "scene/builtin_helpers.h"
-#include "split_report/virtual_world.h"
 #include "support/generated_scene.h"
 #include "support/scripted_client.h"
 

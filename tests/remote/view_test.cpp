@@ -5,10 +5,10 @@
 #include <thread>
 
 #include "base/seal.h"
+#include "desktop/split_report/virtual_world.h"
 #include "platform/net/tcp.h"
 #include "remote/client/servers.h"
 #include "session/open_scene.h"
-#include "split_report/virtual_world.h"
 #include "support/scripted_client.h"
 #include "viewer/viewer.h"
 

@@ -13,7 +13,7 @@
 #include <string>
 
 #ifdef POCKETRAY_HAVE_IMPORT
-#include "import/import.h"
+#include "session/model_import.h"
 #endif
 #include "plan/plan_scene.h"
 #include "radiosity/reference/room_light.h"

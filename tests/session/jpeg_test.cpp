@@ -8,7 +8,7 @@
 #include <vector>
 
 #ifdef POCKETRAY_HAVE_IMPORT
-#include "import/image.h"
+#include "desktop/import/image.h"
 #endif
 #include "session/picture.h"
 

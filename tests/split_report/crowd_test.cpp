@@ -1,5 +1,5 @@
 // Many clients of many servers: each client's own best split, at the prices that servers state, balances their load.
-#include "split_report/crowd.h"
+#include "desktop/split_report/crowd.h"
 
 #include <doctest/doctest.h>
 

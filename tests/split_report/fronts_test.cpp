@@ -1,5 +1,5 @@
 // What a frame costs besides time, and what a server is worth among many clients.
-#include "split_report/fronts.h"
+#include "desktop/split_report/fronts.h"
 
 #include <doctest/doctest.h>
 
@@ -9,7 +9,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "split_report/plot.h"
+#include "desktop/split_report/plot.h"
 #include "support/generated_scene.h"
 #include "support/scripted_client.h"
 

@@ -5,12 +5,12 @@
 #include <cstdio>
 #include <string>
 
+#include "desktop/split_report/virtual_world.h"
 #include "platform/devices/device_list.h"
 #include "remote/client/frame.h"
 #include "session/camera_control.h"
 #include "split/closed_form.h"
 #include "split/flow_shop.h"
-#include "split_report/virtual_world.h"
 #include "support/effort.h"
 #include "support/generated_scene.h"
 #include "support/scripted_client.h"

@@ -1,5 +1,5 @@
 // The split report: the program's choice against the best of a sweep.
-#include "split_report/split_report.h"
+#include "desktop/split_report/split_report.h"
 
 #include <doctest/doctest.h>
 
@@ -8,9 +8,9 @@
 #include <cstdlib>
 #include <string>
 
+#include "desktop/split_report/pixel_cost.h"
 #include "platform/devices/device_list.h"
 #include "session/interrupt.h"
-#include "split_report/pixel_cost.h"
 #include "support/effort.h"
 #include "support/generated_scene.h"
 #include "support/scripted_client.h"

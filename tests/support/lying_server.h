@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <functional>
 
-#include "split_report/virtual_world.h"
+#include "desktop/split_report/virtual_world.h"
 
 namespace pocketray {
 

@@ -5,7 +5,7 @@
 #include <set>
 
 #include "base/rng.h"
-#include "sweep/reference_share.h"
+#include "desktop/sweep/reference_share.h"
 
 using namespace pocketray;
 

@@ -5,9 +5,9 @@
 #include <atomic>
 #include <cstdio>
 
+#include "desktop/sweep/reference_team.h"
 #include "session/interrupt.h"
 #include "support/fake_team.h"
-#include "sweep/reference_team.h"
 
 using namespace pocketray;
 

@@ -12,9 +12,9 @@
 #include <set>
 #include <thread>
 
+#include "desktop/sweep/references.h"
 #include "platform/file.h"
 #include "session/interrupt.h"
-#include "sweep/references.h"
 
 using namespace pocketray;
 

@@ -4,19 +4,21 @@
 set -eu
 cd "$1"
 
-# Ranks of DESIGN.md: a folder of src/ includes only folders of strictly lower rank, or itself.
-ranks="base=0 scene=1 effect=1 brdf=2 accel=2 indirect=3 shade=4 temporal=5 split=5 present=5 wire=5 reference=5 radiosity=5 plan=6 import=6 accuracy=6
-  engine=7 session=8 remote=9 budget=9 viewer=10 sweep=10 split_report=10 coherence_report=10 app=11"
+# Ranks of DESIGN.md: a folder of src/ includes only folders of strictly lower rank, or itself. Folders of src/desktop/, which
+# no device build contains, have ranks of their own; only they and app/ include them.
+ranks="base=0 scene=1 effect=1 brdf=2 accel=2 indirect=3 shade=4 temporal=5 split=5 present=5 wire=5 plan=6 engine=7 session=8
+  remote=9 budget=9 viewer=10 app=12 desktop/reference=5 desktop/accuracy=6 desktop/import=9 desktop/radiosity=9
+  desktop/sweep=10 desktop/split_report=10 desktop/coherence_report=10 desktop/reference_view=11"
 line_count_max=450
 # Comments say what a thing is, not what it shares with the one above: so many may open with a back-reference.
 back_reference='^[[:space:]]*// (Of|The same|That|Those|What|Whether)\b'
 back_reference_max=20
 
 # heap_rooms may use the heap; all others, and platform/, are the core. platform_rooms may include the platform.
-heap_rooms='reference|radiosity|accuracy|import|session|remote|budget|viewer|sweep|split_report|coherence_report|app'
+heap_rooms='session|remote|budget|viewer|desktop|app'
 # The C++ library allocates for each thread, before the seal.
 heap_files='src/engine/workers\.cpp'
-platform_rooms='session|remote|budget|viewer|sweep|split_report|coherence_report|app'
+platform_rooms='session|remote|budget|viewer|desktop/(reference_view|sweep|split_report|coherence_report)|app'
 # The only file that may include CLI11.
 command_line_room=src/app/command_line.cpp
 
@@ -68,17 +70,19 @@ check_includes() {
   tr '\n' '\0' <"$plain/.all" | xargs -0 -r awk -v ranks="$ranks" -v line_count_max=$line_count_max \
     -v platform_rooms="$platform_rooms" -v command_line_room="$command_line_room" '
     function report(text) { print FILENAME ":" FNR ": " text }
+    function room(first, second) { return first == "desktop" ? first "/" second : first }
     BEGIN { n = split(ranks, entry, " "); for (i = 1; i <= n; ++i) { split(entry[i], pair, "="); rank[pair[1]] = pair[2] + 0 } }
     FNR == 1 {
       split(FILENAME, part, "/")
-      folder = part[1] == "src" ? part[2] : part[1]
-      if (part[1] == "src" && part[2] ~ /\./) report("src/ holds folders alone")
+      folder = part[1] == "src" ? room(part[2], part[3]) : part[1]
+      if (part[1] == "src" && folder ~ /\./) report("src/ and src/desktop/ hold folders alone")
       else if (part[1] == "src" && !(folder in rank)) report("folder " folder " has no rank in DESIGN.md")
     }
     FNR == line_count_max + 1 { report("longer than " line_count_max " lines") }
     /^[ \t]*#[ \t]*include[ \t]*["<]/ {
       target = $0; sub(/^[^"<]*["<]/, "", target); sub(/[">].*/, "", target)
-      top = target; sub(/\/.*/, "", top)
+      split(target, step, "/")
+      top = target ~ /\// ? room(step[1], step[2]) : target
       platform_user = folder ~ "^(" platform_rooms ")$" || part[1] == "tests" || part[1] == "platform"
       if (target ~ /(^|\/)\.\.\//) report("include " target " by its path from src/ or platform/")
       else if (top == "platform" && target !~ /^platform\/devices\// && !platform_user) report(folder "/ must not include " target)
@@ -87,6 +91,8 @@ check_includes() {
       else if (part[1] == "platform" && top in rank && target ~ /\//) report("platform/ includes nothing of src/, here " target)
       else if (part[1] == "src" && folder in rank && top in rank && target ~ /\// && top != folder && rank[top] >= rank[folder])
         report(folder "/ (rank " rank[folder] ") must not include " target " (rank " rank[top] ")")
+      else if (part[1] == "src" && top ~ /^desktop\// && folder !~ /^(desktop\/.*|app)$/)
+        report("only desktop/ and app/ include desktop/, here " target)
     }'
 }
 

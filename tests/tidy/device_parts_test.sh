@@ -4,8 +4,9 @@
 # declared there and absent from the program's symbols; functions of a device's rooms are found.
 set -eu
 sources=$1 symbols=$2 nm=$3
-desktop="reference/decode_accumulation accuracy/unbiased_rmse import/import_scene sweep/load_accumulation
-  split_report/measure_split coherence_report/badt_frame radiosity/polygon_form_factor"
+desktop="desktop/reference/decode_accumulation desktop/accuracy/unbiased_rmse desktop/import/import_gltf
+  desktop/sweep/load_accumulation desktop/split_report/measure_split desktop/coherence_report/badt_frame
+  desktop/radiosity/polygon_form_factor"
 device="engine/trace_frame remote/client/make_client"
 failures=0
 fail() { echo "$1"; failures=$((failures + 1)); }

@@ -71,13 +71,13 @@ twice_must() {  # found|allowed FILE OTHER-FILE LINES... : puts these lines in b
     failures=$((failures + 1))
   }
 }
-twice_must found src/plan/a.h src/import/b.h 'namespace pocketray {' 'struct Storage {' 'int x;' '};' '}'
+twice_must found src/plan/a.h src/desktop/import/b.h 'namespace pocketray {' 'struct Storage {' 'int x;' '};' '}'
 twice_must found src/plan/a.h platform/b.h 'namespace n {' 'template <class T>' 'class alignas(16) Storage final : Base {};' '}'
 twice_must found src/plan/a.h tests/plan/b.h 'namespace {' 'struct X { int y; };' '}' 'namespace n {' 'enum class E : int { a };' '}'
 twice_must found tests/plan/a.h tests/plan/b.h 'extern "C" {' 'struct Rig {};' '}'
 twice_must allowed tests/plan/a.h tests/wire/b.h 'struct Rig {};'
-twice_must allowed src/plan/a.cpp src/import/b.cpp 'namespace n {' 'namespace {' 'struct Storage {};' '}' 'struct Storage;' '}'
-twice_must allowed src/plan/a.cpp src/import/b.cpp 'void f() {' '  struct Storage {};' 'struct Storage {};' '}'
+twice_must allowed src/plan/a.cpp src/desktop/import/b.cpp 'namespace n {' 'namespace {' 'struct Storage {};' '}' 'struct Storage;' '}'
+twice_must allowed src/plan/a.cpp src/desktop/import/b.cpp 'void f() {' '  struct Storage {};' 'struct Storage {};' '}'
 twice_must allowed src/base/simd_a.h src/base/simd_b.h 'struct Float4 {};'
 
 comment_that_opens() { printf '// %s it.' "$1"; }
@@ -88,10 +88,14 @@ must_pass tests/base/a_test.cpp "$twenty" "$(comment_that_opens Of)"
 must_pass src/shade/a.cpp '#include "accel/accel.h"' '#include "shade/b.h"' '#include <cmath>'
 must_pass src/app/command_line.cpp '#include <CLI/CLI.hpp>'
 must_pass src/app/a.cpp '#include "platform/platform.h"' '#include <vector>' 'auto p = new std::vector<int>; throw std::pow(1, 2);'
-must_pass src/accuracy/a.cpp '#include "present/pack.h"' '#include <vector>' 'double x = std::pow(a, b);'
-must_fail "(rank 6) must not include engine/frame.h (rank 7)" src/accuracy/a.cpp '#include "engine/frame.h"'
+must_pass src/desktop/accuracy/a.cpp '#include "present/pack.h"' '#include <vector>' 'double x = std::pow(a, b);'
+must_fail "(rank 6) must not include engine/frame.h (rank 7)" src/desktop/accuracy/a.cpp '#include "engine/frame.h"'
 must_fail "(rank 9) must not include viewer/viewer.h (rank 10)" src/remote/client/a.cpp '#include "viewer/viewer.h"'
 must_fail "(rank 7) must not include session/open_scene.h (rank 8)" src/engine/a.cpp '#include "session/open_scene.h"'
+must_fail "(rank 6) must not include desktop/import/gltf.h (rank 9)" src/desktop/accuracy/a.cpp '#include "desktop/import/gltf.h"'
+must_fail "only desktop/ and app/ include desktop/, here desktop/accuracy/flip.h" src/session/a.cpp '#include "desktop/accuracy/flip.h"'
+must_pass src/app/a.cpp '#include "desktop/accuracy/flip.h"'
+must_fail "folder desktop/games has no rank" src/desktop/games/a.cpp 'int x;'
 must_fail "engine/ must not include platform/file.h" src/engine/a.cpp '#include "platform/file.h"'
 must_fail "heap container" src/engine/a.cpp 'std::vector<int> rows;'
 must_fail "libm function" src/engine/a.cpp 'double x = std::log(y);'

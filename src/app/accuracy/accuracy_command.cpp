@@ -1,18 +1,18 @@
 // pocketray accuracy: measures what accuracy costs in time.
 #include "app/accuracy/accuracy_command.h"
-#include "accuracy/csv.h"
-#include "accuracy/gnuplot.h"
-#include "accuracy/report.h"
 #include "app/options.h"
 #include "budget/front_file.h"
+#include "desktop/accuracy/csv.h"
+#include "desktop/accuracy/gnuplot.h"
+#include "desktop/accuracy/report.h"
+#include "desktop/sweep/instructions.h"
+#include "desktop/sweep/reference_team.h"
+#include "desktop/sweep/references.h"
+#include "desktop/sweep/report.h"
+#include "desktop/sweep/rigs.h"
 #include "session/gnuplot.h"
 #include "session/note.h"
 #include "session/output.h"
-#include "sweep/instructions.h"
-#include "sweep/reference_team.h"
-#include "sweep/references.h"
-#include "sweep/report.h"
-#include "sweep/rigs.h"
 
 namespace pocketray {
 namespace {
@@ -79,7 +79,8 @@ void add_accuracy_command(Command program, const Team& team, int* exit_status) {
   o->team = team;
   Command command = program.add_subcommand("accuracy", "measure the time cost of accuracy: sweep every setting");
   command.footer(
-      "Varies one setting at a time (samples, depth, points per area light, …), then several at once, then the settings\n"
+      "Varies one setting at a time (samples, depth, points per area light, …), then several at once, then the "
+      "settings\n"
       "of each method of indirect light. Times each configuration in rounds of random order and compares its picture\n"
       "with a reference, by ꟻLIP and other metrics; fronts are drawn against both kinds of reference.\n"
       "The scene's options set the baseline. The output folder gets index.html with all results, its plots and\n"

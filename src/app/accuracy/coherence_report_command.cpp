@@ -1,12 +1,12 @@
 // pocketray coherence-report: measures the savings from retracing only what changed, next to the paper's table.
 #include <nlohmann/json.hpp>
 
-#include "accuracy/gnuplot.h"
 #include "app/accuracy/accuracy_command.h"
 #include "app/options.h"
 #include "base/isa.h"
 #include "base/limits.h"
-#include "coherence_report/page.h"
+#include "desktop/accuracy/gnuplot.h"
+#include "desktop/coherence_report/page.h"
 #include "session/interrupt.h"
 #include "session/note.h"
 #include "session/output.h"

@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <cctype>
 
-#include "accuracy/display.h"
-#include "accuracy/flip.h"
 #include "base/check.h"
+#include "desktop/accuracy/display.h"
+#include "desktop/accuracy/flip.h"
 #include "platform/file.h"
 #ifdef POCKETRAY_HAVE_IMPORT
-#include "import/image.h"
+#include "desktop/import/image.h"
 #endif
 
 namespace pocketray {

@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "accuracy/errors.h"
-#include "accuracy/result.h"
 #include "base/status.h"
+#include "desktop/accuracy/errors.h"
+#include "desktop/accuracy/result.h"
 
 namespace pocketray {
 

@@ -4,11 +4,11 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "accuracy/flip.h"
-#include "accuracy/strip.h"
 #include "app/accuracy/accuracy_command.h"
 #include "app/accuracy/compare.h"
 #include "app/options.h"
+#include "desktop/accuracy/flip.h"
+#include "desktop/accuracy/strip.h"
 #include "session/output.h"
 #include "session/report.h"
 

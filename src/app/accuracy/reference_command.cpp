@@ -4,13 +4,13 @@
 #include <nlohmann/json.hpp>
 
 #include "app/options.h"
+#include "desktop/sweep/reference_run.h"
+#include "desktop/sweep/reference_team.h"
+#include "desktop/sweep/references.h"
+#include "desktop/sweep/rigs.h"
 #include "platform/file.h"
 #include "session/note.h"
 #include "session/output.h"
-#include "sweep/reference_run.h"
-#include "sweep/reference_team.h"
-#include "sweep/references.h"
-#include "sweep/rigs.h"
 
 namespace pocketray {
 namespace {

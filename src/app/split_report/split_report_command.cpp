@@ -4,8 +4,11 @@
 
 #include <nlohmann/json.hpp>
 
-#include "accuracy/gnuplot.h"
 #include "app/options.h"
+#include "desktop/accuracy/gnuplot.h"
+#include "desktop/split_report/fronts.h"
+#include "desktop/split_report/pixel_cost.h"
+#include "desktop/split_report/plot.h"
 #include "engine/frame.h"
 #include "session/interrupt.h"
 #include "session/measure.h"
@@ -13,9 +16,6 @@
 #include "session/output.h"
 #include "session/report.h"
 #include "session/scene_identity.h"
-#include "split_report/fronts.h"
-#include "split_report/pixel_cost.h"
-#include "split_report/plot.h"
 
 namespace pocketray {
 namespace {

@@ -1,12 +1,12 @@
 // Pictures whose rows went through both ends of the codec.
-#include "accuracy/network/row_stream.h"
+#include "desktop/accuracy/network/row_stream.h"
 
 #include <doctest/doctest.h>
 
 #include <cstring>
 
-#include "accuracy/display.h"
-#include "accuracy/flip.h"
+#include "desktop/accuracy/display.h"
+#include "desktop/accuracy/flip.h"
 #include "scene/builtin_helpers.h"
 #include "support/generated_scene.h"
 

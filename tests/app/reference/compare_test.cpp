@@ -8,8 +8,8 @@
 #include <fstream>
 #include <sstream>
 
-#include "accuracy/flip.h"
-#include "accuracy/strip.h"
+#include "desktop/accuracy/flip.h"
+#include "desktop/accuracy/strip.h"
 #include "platform/file.h"
 
 using namespace pocketray;

@@ -23,9 +23,8 @@ failures, compared = 0, 0
 for name, mhz in MHZ.items():
     with open(os.path.join(root, "platform/devices", name.replace("-", "_") + ".h")) as file:
         source = file.read()
-    cpu_class = re.search(r'"(arm\w+|aarch64|mips32)"', source)[1]
-    # The integers after the number of cores, which follows the keys.
-    slowdown = float(re.search(r"(?:nullptr|Keys),\s+\d+,\s+([\d.]+),", source)[1])
+    cpu_class = re.search(r'\bcpu_class = "(\w+)"', source)[1]
+    slowdown = float(re.search(r"\bslowdown = ([\d.]+);", source)[1])
     ratios = [cycles[COUNTED_AS.get(cpu_class, cpu_class), scene] / mhz * 1000 / ns for scene, ns in HOST_NS.items()]
     expected = math.sqrt(ratios[0] * ratios[1])
     compared += 1

@@ -8,9 +8,9 @@
 #include <ctime>
 #include <thread>
 
+#include "desktop/reference/reference.h"
 #include "effect/setting_list.h"
-#include "radiosity/solve.h"
-#include "reference/reference.h"
+#include "session/radiosity_solver.h"
 #include "shade/camera.h"
 #include "shade/filters.h"
 #include "shade/surface.h"

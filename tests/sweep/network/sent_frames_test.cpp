@@ -1,5 +1,5 @@
 // What a sweep says of rows from render servers.
-#include "sweep/network/sent_frames.h"
+#include "desktop/sweep/network/sent_frames.h"
 
 #include <doctest/doctest.h>
 #include <stdlib.h>
@@ -8,9 +8,9 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "accuracy/display.h"
+#include "desktop/accuracy/display.h"
+#include "desktop/sweep/references.h"
 #include "session/interrupt.h"
-#include "sweep/references.h"
 
 using namespace pocketray;
 

@@ -1,11 +1,11 @@
 // The reference beside the picture.
-#include "viewer/reference/reference_view.h"
+#include "desktop/reference_view/reference_view.h"
 
 #include <doctest/doctest.h>
 
+#include "desktop/reference/reference.h"
 #include "engine/frame.h"
 #include "platform/null/null.h"
-#include "reference/reference.h"
 #include "viewer/viewer.h"
 
 using namespace pocketray;

@@ -1,0 +1,128 @@
+#include "desktop/accuracy/findings.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "desktop/accuracy/text.h"
+
+namespace pocketray {
+
+double ms_of(const Sweep& sweep, double ns_per_pixel) { return ns_per_pixel * sweep.width * sweep.height * 1e-6; }
+
+bool has_figures(const Measured& m) {
+  return m.missing.empty() && std::isfinite(m.flip) && std::isfinite(m.ns_per_pixel.value);
+}
+
+std::vector<const Measured*> values_of(const Sweep& sweep, const std::string& knob) {
+  std::vector<const Measured*> result;
+  for (const Measured& m : sweep.measured)
+    if (m.knob == knob) result.push_back(&m);
+  return result;
+}
+
+std::vector<const Measured*> front_of(const Sweep& sweep) {
+  std::vector<const Measured*> front;
+  for (const Measured& m : sweep.measured)
+    if (m.pareto && has_figures(m) && (!m.is_default || m.knob == "baseline")) front.push_back(&m);
+  std::stable_sort(front.begin(), front.end(),
+                   [](const Measured* a, const Measured* b) { return a->ns_per_pixel.value < b->ns_per_pixel.value; });
+  return front;
+}
+
+bool knows_other(const Sweep& sweep) {
+  return std::any_of(sweep.measured.begin(), sweep.measured.end(),
+                     [](const Measured& m) { return has_figures(m) && std::isfinite(m.flip_other); });
+}
+
+double physical_flip(const Sweep& sweep, const Measured& m) {
+  return sweep.reference == "model" ? m.flip_other : m.flip;
+}
+
+namespace {
+
+bool compares_methods(const Sweep& sweep, const Measured& m) {
+  return has_figures(m) && std::isfinite(physical_flip(sweep, m)) && m.is_choice && !m.indirect.empty();
+}
+
+}  // namespace
+
+std::vector<std::string> methods_of(const Sweep& sweep) {
+  std::vector<std::string> methods;
+  for (const Measured& m : sweep.measured)
+    if (compares_methods(sweep, m) && std::find(methods.begin(), methods.end(), m.indirect) == methods.end())
+      methods.push_back(m.indirect);
+  return methods;
+}
+
+std::vector<const Measured*> method_front(const Sweep& sweep, const std::string& method) {
+  std::vector<const Measured*> all, front;
+  std::vector<double> cost, error;
+  for (const Measured& m : sweep.measured)
+    if (compares_methods(sweep, m) && m.indirect == method)
+      all.push_back(&m), cost.push_back(m.ns_per_pixel.value), error.push_back(physical_flip(sweep, m));
+  const std::vector<bool> is_on_front = pareto_front(cost, error);
+  for (std::size_t i = 0; i < all.size(); ++i)
+    if (is_on_front[i]) front.push_back(all[i]);
+  std::stable_sort(front.begin(), front.end(),
+                   [](const Measured* a, const Measured* b) { return a->ns_per_pixel.value < b->ns_per_pixel.value; });
+  return front;
+}
+
+std::string own_settings(const Measured& m) {
+  if (m.knob == "baseline" || m.knob == "indirect") return "";
+  if (m.knob != "several") return m.knob + " " + m.value;
+  std::string own;
+  for (std::size_t begin = 0; begin < m.value.size();) {
+    const std::size_t end = std::min(m.value.find(", ", begin), m.value.size());
+    const std::string setting = m.value.substr(begin, end - begin);
+    if (setting.rfind("indirect ", 0) != 0) own += (own.empty() ? "" : ", ") + setting;
+    begin = end + 2;
+  }
+  return own;
+}
+
+KnobEnds ends_of(const Sweep& sweep, const std::string& knob) {
+  KnobEnds ends;
+  for (const Measured* m : values_of(sweep, knob)) {
+    if (!has_figures(*m)) continue;
+    if (!ends.worst) ends.worst = m;
+    ends.best = m;
+    if (m->is_default) ends.standard = m;
+  }
+  return ends;
+}
+
+bool gain_claimed(const Sweep& sweep, const KnobEnds& ends) {
+  return ends.worst && ends.worst->flip - ends.best->flip > kClaimFactor * sweep.reference_flip;
+}
+
+bool is_paid_in_bytes(const KnobEnds& ends) {
+  return ends.worst && std::isfinite(ends.worst->bytes_per_frame) && std::isfinite(ends.best->bytes_per_frame) &&
+         ends.worst->bytes_per_frame != ends.best->bytes_per_frame;
+}
+
+std::string slope_text(const KnobFigures& knob) {
+  if (!knob.has_slope) return knob.theory.empty() ? "" : "theory: " + knob.theory;
+  auto hundredths = [](double v) { return (v <= -0.005 ? "−" : "") + format("%.2f", std::fabs(v)); };
+  std::string text = "slope of its own RMSE over time " + hundredths(knob.slope.value);
+  if (std::isfinite(knob.slope.low) && std::isfinite(knob.slope.high))
+    text += " [" + hundredths(knob.slope.low) + ", " + hundredths(knob.slope.high) + "]";
+  text += "; RMSE is off that law by " + format("%.1f %%", 100 * knob.slope_misfit);
+  return text + (knob.theory.empty() ? "" : "; theory: " + knob.theory);
+}
+
+std::vector<const KnobFigures*> knobs_by_price(const Sweep& sweep) {
+  std::vector<const KnobFigures*> knobs;
+  for (const KnobFigures& knob : sweep.knobs) knobs.push_back(&knob);
+  auto rank = [&](const KnobFigures* knob) {
+    if (!std::isfinite(knob->ms_per_flip)) return 2;
+    return gain_claimed(sweep, ends_of(sweep, knob->name)) ? 0 : 1;
+  };
+  std::stable_sort(knobs.begin(), knobs.end(), [&](const KnobFigures* a, const KnobFigures* b) {
+    int rank_a = rank(a), rank_b = rank(b);
+    return rank_a != rank_b ? rank_a < rank_b : rank_a < 2 && a->ms_per_flip < b->ms_per_flip;
+  });
+  return knobs;
+}
+
+}  // namespace pocketray

@@ -1,0 +1,207 @@
+#include "desktop/accuracy/page.h"
+
+#include <cmath>
+
+#include "desktop/accuracy/findings.h"
+#include "desktop/accuracy/page_parts.h"
+#include "desktop/accuracy/page_tables.h"
+#include "desktop/accuracy/plot.h"
+#include "desktop/accuracy/strip.h"
+#include "desktop/accuracy/sum_up.h"
+#include "desktop/accuracy/text.h"
+
+namespace pocketray {
+namespace {
+
+std::string plot_figure(const PagePictures& pictures, const std::string& name) {
+  auto found = pictures.plots.find(name);
+  if (found == pictures.plots.end()) return "";
+  return svg_figure(name, found->second);
+}
+
+std::string flip_scale() {
+  std::string stops;
+  for (int i = 0; i <= 10; ++i) {
+    std::array<std::uint8_t, 3> c = flip_color(static_cast<float>(i) / 10);
+    stops += format(", #%02x%02x%02x", c[0], c[1], c[2]);
+  }
+  return "<span class=\"scale\" style=\"background: linear-gradient(to right" + stops + ")\"></span>";
+}
+
+std::string strip_figure(const Sweep& sweep, const PagePictures& pictures, const std::string& knob) {
+  auto found = pictures.strips.find(knob);
+  if (found == pictures.strips.end()) return "";
+  std::string rows;
+  for (const Strip& strip : sweep.strips)
+    if (strip.knob == knob)
+      for (const StripRow& row : strip.rows)
+        rows += (rows.empty() ? "" : "; ") + escaped(row.label) + " (" +
+                (std::isfinite(row.bytes) ? format("%.0f bytes", row.bytes) : figure(row.ms) + " ms") + ", FLIP " +
+                figure(row.flip) + ")";
+  return "<figure class=\"strip\"><div class=\"box\">" + image(found->second, "Strip of " + knob) +
+         "</div><figcaption>From the left: reference, setting, " + std::to_string(kDifferenceGain) +
+         " × difference, FLIP from 0 " + flip_scale() + " to 1. From the top: " + rows + ".</figcaption></figure>\n";
+}
+
+std::string head_of(const Sweep& sweep, const PagePictures& pictures) {
+  std::string title = "What accuracy costs in time: " + escaped(sweep.scene.substr(sweep.scene.rfind('/') + 1));
+  std::string text = page_begin(title) + "<header>\n<div>\n<h1>" + title + "</h1>\n<p class=\"soft\">" +
+                     (sweep.scene.find('/') == std::string::npos ? "" : escaped(sweep.scene) + ", ") +
+                     format("%u × %u pixels", sweep.width, sweep.height) + ", " + escaped(sweep.machine) + ", " +
+                     std::to_string(sweep.rounds) + " rounds; the baseline’s output is " + escaped(sweep.output) +
+                     ".</p>\n";
+  text += "<p>Errors are relative to <b>" + escaped(sweep.reference) + "</b>, ";
+  text += sweep.reference == "physical" ? "full light transport, path traced in double precision"
+                                        : "the converged lighting model, in double precision";
+  text += format(" with %u samples per pixel. ", sweep.reference_samples) + "The reference’s own error is FLIP " +
+          figure(sweep.reference_flip, 2) + " and RMSE " + figure(sweep.reference_rmse, 2) + "; differences below " +
+          figure(kClaimFactor, 2) + " times that, <b>FLIP " + figure(kClaimFactor * sweep.reference_flip, 2) +
+          " and RMSE " + figure(kClaimFactor * sweep.reference_rmse, 2) +
+          "</b>, are not claimed: such figures are <span class=\"weak\"><i>grey</i></span>.";
+  if (std::isfinite(sweep.model_flip))
+    text += " The converged model itself is FLIP " + figure(sweep.model_flip) +
+            (std::isfinite(sweep.model_rmse) ? " and RMSE " + figure(sweep.model_rmse) : "") +
+            " from full light transport" +
+            (sweep.model_flip < kClaimFactor * sweep.model_flip_error ? " at most: that reference is too noisy to tell."
+                                                                      : ".");
+  text += "</p>\n</div>\n";
+  if (!pictures.reference_png.empty()) text += image(pictures.reference_png, "The reference") + "\n";
+  return text + "</header>\n";
+}
+
+// Says which knobs buy the most, in a sentence or two.
+std::string answer_of(const Sweep& sweep) {
+  const KnobFigures *first = nullptr, *last = nullptr;
+  std::string free, idle, sent;
+  auto add = [](std::string* list, const std::string& name) { *list += (list->empty() ? "" : ", ") + escaped(name); };
+  for (const KnobFigures* knob : knobs_by_price(sweep)) {
+    KnobEnds ends = ends_of(sweep, knob->name);
+    bool claimed = gain_claimed(sweep, ends);
+    if (is_paid_in_bytes(ends)) {
+      sent +=
+          "<b>" + escaped(knob->name) + "</b> saves bytes from render servers, not time: " +
+          format("%.0f of %.0f", ends.best->bytes_per_frame - ends.worst->bytes_per_frame, ends.best->bytes_per_frame) +
+          " per frame for FLIP " + figure(ends.worst->flip - ends.best->flip, 2) + ". ";
+    } else if (!claimed || !std::isfinite(knob->ms_per_flip)) {
+      add(&idle, knob->name);
+    } else if (knob->ms_per_flip <= 0) {
+      add(&free, knob->name);
+    } else {
+      if (!first) first = knob;
+      last = knob;
+    }
+  }
+  std::string text;
+  if (first)
+    text += "<b>" + escaped(first->name) + "</b> buys the most accuracy per millisecond: .01 of FLIP for <b>" +
+            figure(first->ms_per_flip) + " ms</b> per frame. ";
+  if (last != first)
+    text += "<b>" + escaped(last->name) + "</b> buys the least: " + figure(last->ms_per_flip) + " ms. ";
+  text += sent;
+  if (!free.empty()) text += "Better and no slower: " + free + ". ";
+  if (!idle.empty()) text += "No gain that can be claimed: " + idle + ".";
+  if (!first && free.empty() && !idle.empty()) text += " A reference with more samples may show one.";
+  if (text.empty()) text = "No knob was measured.";
+  return "<p class=\"answer\">" + text + "</p>\n";
+}
+
+std::string knob_section(const Sweep& sweep, const PagePictures& pictures, const KnobFigures& knob) {
+  std::string plot = "knob_" + file_word(knob.name), what = knob.what, slope = slope_text(knob);
+  if (!what.empty() && what[0] >= 'a' && what[0] <= 'z') what[0] = static_cast<char>(what[0] - 'a' + 'A');
+  std::string text = "<h2 id=\"" + file_word(knob.name) + "\">" + escaped(knob.name) + "</h2>\n<p>" + escaped(what) +
+                     " <span class=\"soft\">(effect: " + escaped(knob.effect) + ")</span>.";
+  if (pictures.plots.count(plot) == 0 && !slope.empty()) text += " On logarithmic scales: " + escaped(slope) + ".";
+  return text + "</p>\n" + plot_figure(pictures, plot) + strip_figure(sweep, pictures, knob.name) +
+         value_table(sweep, knob.name);
+}
+
+// The front against the other kind of reference.
+std::string other_section(const Sweep& sweep, const PagePictures& pictures) {
+  if (!knows_other(sweep)) return "";
+  const Sweep other = against_other(sweep);
+  const bool is_model = other.reference == "model";
+  return "<h2>The front against " + escaped(other.reference) + "</h2>\n<p>The same pictures, compared with " +
+         (is_model ? "the converged lighting model" : "full light transport") +
+         format(" of %u samples per pixel, whose own error is FLIP ", other.reference_samples) +
+         figure(other.reference_flip, 2) + ".</p>\n" +
+         pair(plot_figure(pictures, other_front(sweep)), front_table(other));
+}
+
+std::string methods_section(const Sweep& sweep, const PagePictures& pictures) {
+  if (methods_of(sweep).size() < 2) return "";
+  return "<h2>Methods of indirect light</h2>\n<p>Each method with every combination of its own settings, at the "
+         "baseline’s samples and at four, and everything else that was measured with it: its Pareto front against "
+         "full light transport.</p>\n" +
+         pair(plot_figure(pictures, "indirect"), method_table(sweep));
+}
+
+// Describes how rows were sent, if they were.
+std::string sent_method(const Sweep& sweep) {
+  for (const Measured& m : sweep.measured)
+    if (std::isfinite(m.bytes_per_frame))
+      return format(
+          " Bytes per frame cover all rows of a picture from a render server, without message overhead. To measure "
+          "them, the camera orbits its target by %g° per frame and ends at the judged picture, the last "
+          "of %u. Each picture passes through encoder and decoder, its rows predicted from the previous picture and "
+          "from each other; the first, which has no predecessor, does not count. “near-lossless on” shows the "
+          "decoder’s result. Devices without a server have no such setting, so it is not on the front.",
+          kSentOrbitDegrees, kSentFrames);
+  return "";
+}
+
+std::string method_of(const Sweep& sweep) {
+  std::string notes;
+  for (const std::string& note : sweep.notes) notes += "<li>" + escaped(note) + "</li>\n";
+  if (!notes.empty()) notes = "<ul class=\"soft\">\n" + notes + "</ul>\n";
+  return "<h2>Method</h2>\n<p class=\"soft\">FLIP (ꟻLIP): Andersson, Nilsson, Akenine-Möller, Oskarsson, "
+         "Åström and Fairchild 2020, “ꟻLIP: A Difference Evaluator for Alternating Images”, at " +
+         figure(sweep.pixels_per_degree) +
+         " pixels per degree; the mean over the picture, after output (quantised, dithered) and before it. RMSE, "
+         "relative MSE (Rousselle et al. 2011), 99th percentile, maximum, bias and PSNR are of linear light from 0 to "
+         "1 before output.</p>\n<p class=\"soft\">A frame’s time covers posing, refitting, placing lights, tracing and "
+         "packing, after a frame with the same settings; the cost of changing settings is excluded. Instructions cover "
+         "only tracing and packing. The configurations run interleaved in random order. Ratios to the baseline are "
+         "taken within a round, whose runs share the state of the machine; shown are their median and the 95 % "
+         "interval of interpolated order statistics (Hettmansperger and Sheather 1986). Times are the ratio times the "
+         "baseline’s median; their interval is that of the configuration’s own times and so includes the machine’s "
+         "variation." +
+         (sweep.rounds < 6
+              ? std::string(
+                    " With fewer than six rounds all intervals are ranges of the rounds, which cover less than 95 %.")
+              : std::string()) +
+         sent_method(sweep) +
+         "</p>\n<p class=\"soft\">A slope is the "
+         "exponent s of RMSE² = floor² + (c timeˢ)², fitted in each round to all values of a knob by least squares of "
+         "relative differences, where the reference can tell the errors apart: the median of the rounds, with its 95 % "
+         "interval in brackets. The interval covers only the times; the deviation of RMSE from the law is given "
+         "separately. “ms per .01 FLIP” is the time from a knob’s worst end to its best divided by the gain. * marks "
+         "the baseline’s value.</p>\n" +
+         notes;
+}
+
+}  // namespace
+
+std::string page_of(const Sweep& sweep, const PagePictures& pictures) {
+  std::string text = head_of(sweep, pictures) + "<h2>What buys the most accuracy per millisecond</h2>\n" +
+                     answer_of(sweep) + pair(price_table(sweep), plot_figure(pictures, "price"));
+  text +=
+      "<h2>The front: the least error for the time</h2>\n<p>No measured configuration is both faster and more "
+      "accurate, as far as the reference can tell: in order of time, a setting joins the front if it is better by "
+      "FLIP " +
+      figure(kClaimFactor * sweep.reference_flip, 2) + ".</p>\n" +
+      pair(plot_figure(pictures, "front"), front_table(sweep));
+  text += other_section(sweep, pictures) + methods_section(sweep, pictures);
+  std::string links;
+  for (const KnobFigures& knob : sweep.knobs)
+    links += "<a href=\"#" + file_word(knob.name) + "\">" + escaped(knob.name) + "</a> ";
+  if (!links.empty()) text += "<h2>Knob by knob</h2>\n<nav>" + links + "</nav>\n";
+  for (const KnobFigures& knob : sweep.knobs) text += knob_section(sweep, pictures, knob);
+  if (!values_of(sweep, "several").empty())
+    text +=
+        "<h2>Several at once</h2>\n<details><summary>Configurations that cover pairs of values of two "
+        "knobs</summary>\n" +
+        value_table(sweep, "several") + "</details>\n";
+  return text + method_of(sweep) + kPageEnd;
+}
+
+}  // namespace pocketray

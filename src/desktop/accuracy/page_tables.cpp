@@ -1,0 +1,131 @@
+#include "desktop/accuracy/page_tables.h"
+
+#include <cmath>
+
+#include "desktop/accuracy/findings.h"
+#include "desktop/accuracy/text.h"
+
+namespace pocketray {
+namespace {
+
+std::string cell(const std::string& text, const char* kind = "") {
+  return *kind ? "<td class=\"" + std::string(kind) + "\">" + text + "</td>" : "<td>" + text + "</td>";
+}
+std::string headings(const std::vector<std::string>& names) {
+  std::string row = "<thead><tr>";
+  for (const std::string& name : names) row += "<th>" + name + "</th>";
+  return row + "</tr></thead>\n";
+}
+std::string boxed(const std::string& head, const std::string& rows) {
+  return "<div class=\"box\"><table>\n" + head + "<tbody>\n" + rows + "</tbody></table></div>\n";
+}
+
+// Marks numbers too small to claim.
+std::string claimed_cell(const std::string& text, bool claimed) {
+  return claimed ? cell(text) : cell("<i>" + text + "</i>", "weak");
+}
+std::string error_cell(double error, double reference_error) {
+  return claimed_cell(figure(error), !(error < kClaimFactor * reference_error));
+}
+std::string ms_text(const Sweep& sweep, const Interval& ns) {
+  std::string text = figure(ms_of(sweep, ns.value));
+  if (std::isfinite(ns.low) && std::isfinite(ns.high) && ns.low < ns.high)
+    text += " <small>" + figure(ms_of(sweep, ns.low)) + "–" + figure(ms_of(sweep, ns.high)) + "</small>";
+  return text;
+}
+std::string ratio_text(const Interval& ratio) {
+  if (!(ratio.value > 0)) return "–";
+  std::string text = figure(ratio.value);
+  if (ratio.low < ratio.high) text += " <small>" + figure(ratio.low) + "–" + figure(ratio.high) + "</small>";
+  return text;
+}
+std::string name_of(const Measured& m) {
+  if (m.knob == "baseline") return "baseline";
+  return escaped(m.knob == "several" ? m.value : m.knob + " " + m.value);
+}
+
+std::string bytes_text(double bytes) { return std::isfinite(bytes) ? format("%.0f", bytes) : "–"; }
+
+std::string end_text(const Sweep& sweep, const Measured* m, bool in_bytes) {
+  if (!m) return cell("–");
+  std::string price =
+      in_bytes ? bytes_text(m->bytes_per_frame) + " bytes" : figure(ms_of(sweep, m->ns_per_pixel.value)) + " ms";
+  return cell("<b>" + escaped(m->value) + "</b><br /><small>" + price + ", FLIP " + figure(m->flip) + "</small>");
+}
+
+std::string price_text(double price) {
+  if (!std::isfinite(price)) return "–";
+  return price > 0 ? figure(price) : "free";
+}
+
+}  // namespace
+
+std::string price_table(const Sweep& sweep) {
+  std::string rows;
+  for (const KnobFigures* knob : knobs_by_price(sweep)) {
+    KnobEnds ends = ends_of(sweep, knob->name);
+    bool claimed = gain_claimed(sweep, ends), in_bytes = is_paid_in_bytes(ends);
+    double gain = ends.worst ? ends.worst->flip - ends.best->flip : kNotMeasured;
+    rows += claimed ? "<tr>" : "<tr class=\"weak\">";
+    rows += "<th><a href=\"#" + file_word(knob->name) + "\">" + escaped(knob->name) + "</a><br /><small>" +
+            escaped(knob->effect) + "</small></th>" +
+            cell("<b>" + (in_bytes ? "bytes" : price_text(knob->ms_per_flip)) + "</b>", "key") + cell(figure(gain)) +
+            end_text(sweep, ends.worst, in_bytes) + end_text(sweep, ends.standard, in_bytes) +
+            end_text(sweep, ends.best, in_bytes) + "</tr>\n";
+  }
+  return boxed(headings({"knob", "ms per .01 FLIP", "FLIP gained", "worst end", "baseline", "best end"}), rows);
+}
+
+std::string front_table(const Sweep& sweep) {
+  std::string rows;
+  int number = 0;
+  for (const Measured* m : front_of(sweep))
+    rows += "<tr>" + cell(std::to_string(++number), "key") + "<th class=\"name\"><span>" + name_of(*m) +
+            "</span></th>" + cell(ms_text(sweep, m->ns_per_pixel)) + cell(ratio_text(m->time_ratio)) +
+            error_cell(m->flip, sweep.reference_flip) + error_cell(m->errors.rmse, sweep.reference_rmse) + "</tr>\n";
+  return boxed(headings({"", "setting", "ms per frame", "× baseline", "FLIP", "RMSE"}), rows);
+}
+
+std::string method_table(const Sweep& sweep) {
+  std::string rows;
+  for (const std::string& method : methods_of(sweep))
+    for (const Measured* m : method_front(sweep, method))
+      rows += "<tr><th>" + escaped(method) + "</th>" + cell(escaped(own_settings(*m))) +
+              cell(ms_text(sweep, m->ns_per_pixel)) + cell(figure(physical_flip(sweep, *m))) + "</tr>\n";
+  return boxed(headings({"method", "settings", "ms per frame", "FLIP"}), rows);
+}
+
+std::string value_table(const Sweep& sweep, const std::string& knob) {
+  std::vector<const Measured*> values = values_of(sweep, knob);
+  bool counted = false, sent = is_paid_in_bytes(ends_of(sweep, knob));
+  for (const Measured* m : values) counted = counted || std::isfinite(m->instructions_per_pixel);
+  std::vector<std::string> names = {"value",    "ms per frame", "× baseline", "FLIP", "before output", "RMSE",
+                                    "rel. MSE", "p99",          "max",        "bias", "PSNR, dB"};
+  if (counted) names.push_back("instructions per pixel");
+  if (sent) names.push_back("bytes per frame");
+  std::string rows;
+  for (const Measured* m : values) {
+    rows += m->is_default ? "<tr class=\"standard\">" : "<tr>";
+    rows += "<th>" + escaped(m->value) + (m->is_default ? "*" : "") +
+            (m->note.empty() ? "" : "<br /><small>" + escaped(m->note) + "</small>") + "</th>";
+    if (!m->missing.empty()) {
+      rows += "<td class=\"missing\" colspan=\"" + std::to_string(names.size() - 1) +
+              "\">not measured: " + escaped(m->missing) + "</td></tr>\n";
+      continue;
+    }
+    const PictureErrors& e = m->errors;
+    rows += cell(ms_text(sweep, m->ns_per_pixel)) + cell(ratio_text(m->time_ratio)) +
+            error_cell(m->flip, sweep.reference_flip) + error_cell(m->flip_before, sweep.reference_flip) +
+            error_cell(e.rmse, sweep.reference_rmse);
+    bool claimed = !(e.rmse < kClaimFactor * sweep.reference_rmse);  // otherwise mostly the reference's own error
+    for (const std::string& text : {figure(e.rel_mse), figure(e.p99), figure(e.max), figure(e.bias),
+                                    std::isfinite(e.psnr) ? format("%.1f", e.psnr) : figure(e.psnr)})
+      rows += claimed_cell(text, claimed);
+    if (counted) rows += cell(figure(m->instructions_per_pixel, 4));
+    if (sent) rows += cell(bytes_text(m->bytes_per_frame));
+    rows += "</tr>\n";
+  }
+  return boxed(headings(names), rows);
+}
+
+}  // namespace pocketray

@@ -1,0 +1,18 @@
+// The tables of the page.
+#pragma once
+#include <string>
+
+#include "desktop/accuracy/result.h"
+
+namespace pocketray {
+
+// "ms per .01 FLIP" by knob, cheapest first.
+std::string price_table(const Sweep& sweep);
+// The Pareto front's settings, numbered as in its plot.
+std::string front_table(const Sweep& sweep);
+// The front of each method of indirect light, as in its plot.
+std::string method_table(const Sweep& sweep);
+// All figures of one knob's values; for "several", those of the combined settings.
+std::string value_table(const Sweep& sweep, const std::string& knob);
+
+}  // namespace pocketray

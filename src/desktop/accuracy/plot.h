@@ -1,0 +1,20 @@
+// Plots of a sweep as gnuplot scripts with inline data: each draws NAME.png and NAME.svg in the current folder.
+#pragma once
+#include "desktop/accuracy/plot_script.h"
+#include "desktop/accuracy/result.h"
+
+namespace pocketray {
+
+// ꟻLIP over time of all configurations, the Pareto front as a line with labels numbered from 1, and the area too small
+// to claim.
+Plot front_plot(const Sweep& sweep, const std::string& name = "front");
+// Name of the plot of the front against the other kind of reference: "front_physical".
+std::string other_front(const Sweep& sweep);
+// ꟻLIP against full light transport over time, the front of each method of indirect light as a line.
+Plot method_plot(const Sweep& sweep);
+// RMSE and ꟻLIP over time for a knob's values.
+Plot knob_plot(const Sweep& sweep, const KnobFigures& knob);
+// Price of .01 ꟻLIP for each knob.
+Plot price_plot(const Sweep& sweep);
+
+}  // namespace pocketray

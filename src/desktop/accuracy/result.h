@@ -1,0 +1,102 @@
+// The result of a sweep: frame time and error of each configuration.
+#pragma once
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "desktop/accuracy/errors.h"
+#include "desktop/accuracy/statistics.h"
+
+namespace pocketray {
+
+constexpr double kNotMeasured = std::numeric_limits<double>::quiet_NaN();
+
+// One configuration: the baseline with one knob changed, or several.
+struct Measured {
+  std::string knob;         // its name; "baseline", or "several"
+  std::string value;        // "4", "bilinear"; for several: "samples 4, depth 2"
+  bool is_default = false;  // the baseline's value
+  // Frame time after a frame with equal settings: pose, refit, lights, tracing and packing. The value is the ratio
+  // times the baseline's median; the interval is that of the configuration's own median and includes variation between
+  // rounds.
+  Interval ns_per_pixel;
+  Interval time_ratio;  // relative to the baseline of the same round
+  double instructions_per_pixel = kNotMeasured;
+  double bytes_per_frame = kNotMeasured;  // of its rows from a render server; only for the baseline and near-lossless
+  double flip = kNotMeasured;             // mean, as shown on screen: after quantisation and dither
+  double flip_before = kNotMeasured;      // mean before these
+  double flip_other = kNotMeasured;       // like `flip`, against the other kind of reference
+  PictureErrors errors;                   // exposed linear light, clamped to the display range [0, 1]
+  std::string indirect;                   // method of indirect light, "none" without one; empty: unknown
+  bool is_choice = true;                  // can be chosen between frames on the baseline's screen
+  bool pareto = false;                    // a choice, and no other is faster with at most its ꟻLIP
+  std::string missing;                    // why there are no figures; empty: there are
+  std::string note;                       // says what was timed, if not this renderer
+};
+
+// Summary of a knob. Its configurations are those in `Sweep::measured` with its name, in the order of its values.
+struct KnobFigures {
+  std::string name;    // "samples"
+  std::string what;    // "rays through each pixel"
+  std::string effect;  // the effect it belongs to, or "all", "display"
+  std::string theory;  // theoretical slope, with its number; empty: none
+  // Slope of the knob's own RMSE over time, log-log, from fit_power_law() in each round; error that time does not
+  // reduce comes from the other knobs. The interval covers only the times; slope_misfit is how far errors deviate from
+  // the law.
+  Interval slope;
+  double slope_misfit = 0;
+  bool has_slope = false;
+  double ms_per_flip = kNotMeasured;  // ms per frame for 0.01 of ꟻLIP, from the knob's worst end to its best
+};
+
+// A picture as 8-bit levels R, G, B, row 0 on top.
+struct Levels {
+  std::uint32_t width = 0, height = 0;
+  std::vector<std::uint8_t> rgb;
+};
+
+// One configuration in a strip.
+struct StripRow {
+  std::string label;  // "samples 4"
+  double ms = 0;      // per frame
+  double flip = 0;
+  Levels picture;
+  std::vector<float> flip_map;  // error of each pixel, in [0, 1]
+  double bytes = kNotMeasured;  // of a frame's rows, shown in place of the time if the knob costs bytes
+};
+struct Strip {
+  std::string knob;
+  std::vector<StripRow> rows;  // a few values, least accurate first
+};
+
+struct Sweep {
+  std::string scene, machine;  // "cornell"; "2 threads, avx512"
+  std::uint32_t width = 0, height = 0;
+  std::uint32_t rounds = 0;  // number of times that each configuration was timed
+  double pixels_per_degree = 0;
+  std::string reference;                          // "model": the converged lighting model; "physical": full transport
+  std::uint32_t reference_samples = 0;            // per pixel, both seeds together
+  double reference_rmse = 0, reference_flip = 0;  // the reference's own error
+  std::uint32_t other_samples = 0;                // of the other kind of reference, and its own error
+  double other_flip = kNotMeasured;
+  double model_flip = kNotMeasured, model_rmse = kNotMeasured;  // converged model against full transport
+  double model_flip_error = 0;                                  // error of that comparison by both references
+  std::string output;                                           // the baseline's: "rgb565 dithered"
+  Levels reference_picture;
+  std::vector<Measured> measured;  // the baseline first
+  std::vector<KnobFigures> knobs;
+  std::vector<Strip> strips;
+  std::vector<std::string> notes;  // one line each: skipped knobs and why, …
+};
+
+// Differences below this many times the reference's own error are not claimed.
+constexpr double kClaimFactor = 10;
+
+// Pictures whose rows a render server sends: the camera orbits its target by kSentOrbitDegrees per frame, and the last
+// of kSentFrames is judged. Its rows are predicted from the previous frame, as almost all are. Chosen: the path of
+// split-report.
+constexpr double kSentOrbitDegrees = 1;
+constexpr std::uint32_t kSentFrames = 8;
+
+}  // namespace pocketray

@@ -1,0 +1,105 @@
+#include "desktop/reference/rendered.h"
+
+#include <limits>
+
+#include "base/check.h"
+#include "desktop/reference/environment.h"
+#include "desktop/reference/light.h"
+#include "shade/trace_spans.h"
+
+namespace pocketray {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+struct Branch {
+  std::uint32_t depth;  // reflections and refractions so far
+  MediumStack media;
+};
+
+Vec3d follow(const Reference& reference, const ReferenceRay& ray, const Branch& branch);
+
+Vec3d spawn(const Reference& reference, const ReferenceSurface& s, const Vec3d& direction, const Vec3d& weight,
+            const Branch& from, const MediumStack& media) {
+  const FrameData& frame = *reference.world.frame;
+  if (is_zero(weight)) return {0, 0, 0};
+  if (from.depth >= frame.settings.ray_depth) return weight * radiance_beyond_depth(frame, direction);
+  return weight * follow(reference, leave(frame, s, direction, kInfinity), {from.depth + 1, media});
+}
+
+// Radiance that leaves a surface back along the ray.
+Vec3d shade(const Reference& reference, const ReferenceRay& ray, const ReferenceSurface& s,
+            const ReferenceContact& contact, const Branch& branch) {
+  const FrameData& frame = *reference.world.frame;
+  const Material& m = *s.material;
+  if (m.unlit && has(frame.mask, Effect::emission)) return s.diffuse;
+  const double open = has(frame.mask, Effect::ambient) ? s.open : 1;
+  Vec3d sum = s.emission + exact_indirect_of(*frame.scene, s.diffuse, frame.mask) * open;
+  sum += reflected_surroundings(frame, s, -ray.direction) +
+         environment_light_as_rendered(reference, s, -ray.direction, branch.depth == 0);
+  if (lobe_weight(s, -ray.direction) > 0) sum += sum_light_points(reference, s, -ray.direction, true);
+  Vec3d turned = {0, 0, 0};
+  if (!is_zero(lobes_of(s).mirror)) turned += s.mirror;
+  if (!is_zero(m.transmission)) {
+    ReferenceBoundary b = meet_boundary(frame, s, contact, ray.direction, branch.media);
+    turned += Vec3d{b.reflectance, b.reflectance, b.reflectance} * s.passes;
+    sum += spawn(reference, s, b.direction, b.tint * ((1 - b.reflectance) * s.passes), branch, b.beyond);
+  }
+  const Vec3d by_coat = {s.coat_mirror, s.coat_mirror, s.coat_mirror};
+  sum += spawn(reference, s, mirrored(ray.direction, s, s.coat_normal), by_coat, branch, branch.media);
+  if (!is_zero(turned)) sum += spawn(reference, s, mirrored(ray.direction, s), turned, branch, branch.media);
+  return sum;
+}
+
+Vec3d follow(const Reference& reference, const ReferenceRay& ray, const Branch& branch) {
+  const FrameData& frame = *reference.world.frame;
+  Vec3d sum = {0, 0, 0}, carried = {1, 1, 1};  // throughput of the blended surfaces
+  double passed = 0;
+  ReferenceContact contact;
+  ReferenceHit hit = next_hit(reference.world, ray, nullptr);
+  for (; hit.triangle != kNone; hit = next_hit(reference.world, ray, &contact.last)) {
+    carried *= medium_transmittance(*frame.scene, branch.media, hit.t - passed);
+    passed = hit.t;
+    contact.count = 0;
+    contact.last = hit;
+    const ReferenceHit* face = &hit;
+    if (may_be_passed(material_of(frame, hit.triangle))) {
+      contact = gather_contact(reference.world, ray, hit);
+      for (std::uint32_t i = 0; i < contact.count; ++i) {
+        if (!lies_over(frame, contact, i)) continue;
+        double alpha = alpha_of(frame, contact.face[i]);
+        ReferenceSurface over = reference_surface(frame, contact.face[i], ray.direction);
+        if (alpha > 0) sum += carried * alpha * shade(reference, ray, over, contact, branch);
+        carried = carried * (1 - alpha);
+      }
+      if (is_zero(carried)) return sum;
+      face = face_behind(frame, contact);
+    }
+    if (!face) continue;
+    return sum + carried * shade(reference, ray, reference_surface(frame, *face, ray.direction), contact, branch);
+  }
+  return sum + carried * radiance_behind(frame, ray.direction);
+}
+
+}  // namespace
+
+void trace_as_rendered(const Reference& reference, std::uint32_t row_begin, std::uint32_t row_end, Vec3d* picture) {
+  const FrameData& frame = *reference.world.frame;
+  std::uint32_t width = static_cast<std::uint32_t>(frame.view.camera.width), n = frame.settings.samples_per_pixel;
+  CHECK(n >= 1 && n <= kSampleCountMax);
+  CHECK(row_begin <= row_end && row_end <= static_cast<std::uint32_t>(frame.view.camera.height));
+  CHECK(picture != nullptr);
+  for (std::uint32_t y = row_begin; y < row_end; ++y)
+    for (std::uint32_t x = 0; x < width; ++x) {
+      Vec3d sum = {0, 0, 0};
+      for (std::uint32_t i = 0; i < n; ++i) {
+        Vec2 at = sample_offset(i, n);
+        ReferenceRay ray =
+            reference_camera_ray(frame.view.camera, x + static_cast<double>(at.x), y + static_cast<double>(at.y));
+        sum += follow(reference, ray, {0, frame.view.eye_media});
+      }
+      picture[std::size_t(y - row_begin) * width + x] = sum / static_cast<double>(n);
+    }
+}
+
+}  // namespace pocketray

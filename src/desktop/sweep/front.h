@@ -1,0 +1,20 @@
+// The front found by a sweep, for --budget-ms.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "desktop/accuracy/sweep_plan.h"
+#include "plan/front.h"
+
+namespace pocketray {
+
+struct SweptFront {
+  Front front;
+  std::string path;  // in the cache; empty: the scene could not be identified
+};
+
+// Returns the Pareto front of the points that can be chosen between frames on a screen of the baseline's format. Errors
+// closer than the reference's own error count as equal. `sweep`: summed up from the plan's points.
+Front front_of_sweep(const SweepPlan& plan, const Sweep& sweep);
+
+}  // namespace pocketray

@@ -1,0 +1,332 @@
+#include "desktop/sweep/sweep.h"
+
+#include <zlib.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/check.h"
+#include "base/limit_list.h"
+#include "base/rng.h"
+#include "desktop/accuracy/display.h"
+#include "desktop/accuracy/findings.h"
+#include "desktop/sweep/instructions.h"
+#include "desktop/sweep/references.h"
+#include "desktop/sweep/rigs.h"
+#include "effect/setting_list.h"
+#include "platform/instructions.h"
+#include "session/interrupt.h"
+#include "session/progress.h"
+#ifdef POCKETRAY_HAVE_NETWORK
+#include "desktop/sweep/network/sent_frames.h"
+#endif
+
+namespace pocketray {
+namespace {
+
+// Baseline measurements per round; all others are divided by them.
+constexpr int kBaselineRuns = 3;
+constexpr std::uint32_t kRoundsMax = 1000;
+
+struct Run {
+  const AccuracyOptions& options;
+  Rigs rigs;
+  SweepPlan plan;
+  AccuracyState state;
+  ReferencePictures reference, other;  // the chosen one, and the other kind
+};
+
+Transport chosen(const AccuracyOptions& o) { return o.reference == "model" ? Transport::model : Transport::physical; }
+Transport other_than(Transport t) { return t == Transport::model ? Transport::physical : Transport::model; }
+
+Json settings_json(const Quality& quality) {
+  Json settings;
+  for (const SettingRow& row : kSettingList) {
+    double value = row.field.get(quality);
+    if (row.field.kind == SettingKind::count) settings[row.name] = static_cast<std::uint32_t>(value);
+    if (row.field.kind == SettingKind::real) settings[row.name] = value;
+    if (row.field.kind == SettingKind::choice) settings[row.name] = row.field.names[static_cast<int>(value)];
+  }
+  return settings;
+}
+
+Json key_of(const Run& run, const Rig& rig) {
+  const AccuracyOptions& o = run.options;
+  const CommonOptions& c = o.common;
+  const Settings& settings = rig.baseline.settings;
+  std::string ids;
+  for (const SweepPoint& point : run.plan.points) ids += id_of(point) + "\n";
+  Json key = settings_json(settings);
+  key.update({{"program", POCKETRAY_VERSION},
+              {"scene", c.scene},
+              {"content", rig.scene_hash},
+              {"size", std::to_string(settings.width) + "x" + std::to_string(settings.height)},
+              {"camera", c.camera},
+              {"camera-index", c.camera_index},
+              {"time", o.seconds},
+              {"exposure", c.exposure},
+              {"effects", c.effects},
+              {"look", {c.background, c.environment, c.light, c.fov, c.focus}},
+              {"output", o.output},
+              {"reference", o.reference},
+              {"reference-file", o.reference_file},
+              {"reference-samples", reference_samples(o, chosen(o))},
+              {"other-reference-samples", reference_samples(o, other_than(chosen(o)))},
+              {"ppd", o.pixels_per_degree},
+              {"threads", settings.threads},
+              {"isa", isa_name(active_isa())},
+              {"accel", rig.opened.renderer.accel.info->name},
+              {"emulate", c.emulate},
+              {"configurations", crc32_z(0, reinterpret_cast<const Bytef*>(ids.data()), ids.size())}});
+  return key;
+}
+
+// Returns the picture in the rig's renderer as the screen shows it. *bytes_per_frame, unless null, receives the bytes
+// of its rows, in a build that can send them. After an interrupt *levels is meaningless.
+Status find_levels(const Run& run, Rig* rig, const Configuration& configuration, Levels* levels,
+                   double* bytes_per_frame) {
+  const Renderer& renderer = rig->opened.renderer;
+  *levels = displayed_levels(renderer.image.data, renderer.settings.width, renderer.settings.height,
+                             renderer.view.exposure, kOutputFormats[configuration.output]);
+#ifdef POCKETRAY_HAVE_NETWORK
+  if (!bytes_per_frame && !configuration.near_lossless) return success();
+  SentPicture sent;
+  RETURN_IF_ERROR(send_frames(rig, configuration, run.options.seconds, &sent));
+  CHECK(interrupted || configuration.near_lossless || sent.levels.rgb == levels->rgb);
+  *levels = std::move(sent.levels);
+  if (bytes_per_frame) *bytes_per_frame = sent.bytes_per_frame;
+#else
+  CHECK(!configuration.near_lossless);  // there is no such knob
+  (void)run, (void)bytes_per_frame;
+#endif
+  return success();
+}
+
+// After an interrupt there are none.
+Status find_errors(const Run& run, Rig* rig, const SweepPoint& point, PointFigures* f) {
+  const Renderer& renderer = rig->opened.renderer;
+  std::uint32_t width = renderer.settings.width, height = renderer.settings.height;
+  Levels levels;
+  bool counts_bytes = &point == &run.plan.points[0] || point.configuration.near_lossless;
+  RETURN_IF_ERROR(find_levels(run, rig, point.configuration, &levels, counts_bytes ? &f->bytes_per_frame : nullptr));
+  if (interrupted) return success();
+  std::vector<double> light = exposed_light(renderer.image.data, renderer.image.count, renderer.view.exposure);
+  CHECK_EQ(light.size(), run.reference.mean.size());
+  const ReferencePictures& reference = run.reference;
+  double ppd = run.options.pixels_per_degree;
+  const auto shown = encoded_levels(levels);
+  f->flip = mean_of(flip_errors(reference.encoded, shown, width, height, ppd));
+  f->flip_other = mean_of(flip_errors(run.other.encoded, shown, width, height, ppd));
+  f->flip_before = mean_of(flip_errors(reference.encoded, encoded_light(light), width, height, ppd));
+  f->errors = picture_errors(reference.mean, light);
+  f->errors.rmse = unbiased_rmse(reference.one, reference.other, light);
+  f->errors.psnr = f->errors.rmse > 0 ? -20 * std::log10(f->errors.rmse) : std::numeric_limits<double>::infinity();
+  f->has_errors = true;
+  return success();
+}
+
+// Order of a round: points at random, the baseline several times.
+std::vector<std::size_t> round_order(const SweepPlan& plan, std::uint32_t round) {
+  CHECK(!plan.points.empty());
+  std::vector<std::size_t> order(kBaselineRuns, 0);
+  for (std::size_t i = 1; i < plan.points.size(); ++i)
+    if (is_measured(plan, i)) order.push_back(i);
+  Rng rng = make_rng(15, round);
+  for (std::size_t i = order.size(); i > 1; --i)
+    std::swap(order[i - 1], order[static_cast<std::size_t>(next_double(&rng) * static_cast<double>(i))]);
+  return order;
+}
+
+struct RoundProgress {
+  Progress progress;
+  double done = 0;
+};
+
+// Measures each point once. After an interrupt *whole is false and the round's times are discarded.
+Status measure_round(Run* run, RoundProgress* progress, bool* whole) {
+  CHECK_LT(run->state.rounds, run->options.rounds);
+  std::map<std::size_t, std::vector<double>> times;
+  for (std::size_t i : round_order(run->plan, run->state.rounds)) {
+    const SweepPoint& point = run->plan.points[i];
+    Rig* rig;
+    RETURN_IF_ERROR(rig_for(&run->rigs, point.configuration, &rig));
+    double ns_per_pixel = 0;
+    RETURN_IF_ERROR(time_frame(rig, point.configuration, run->options.seconds, &ns_per_pixel));
+    *whole = !interrupted;
+    if (!*whole) return success();
+    times[i].push_back(ns_per_pixel);
+    PointFigures* f = &run->state.points[id_of(point)];
+    if (!f->has_errors) RETURN_IF_ERROR(find_errors(*run, rig, point, f));
+    *whole = f->has_errors;
+    if (!*whole) return success();
+    if (run->state.counted.empty() && std::isnan(f->instructions_per_pixel))
+      RETURN_IF_ERROR(count_instructions(rig, point.configuration, run->options.seconds, &f->instructions_per_pixel));
+    progress->done += 1000 * point.price;
+    show_progress(&progress->progress, static_cast<std::uint64_t>(progress->done));
+  }
+  for (const auto& entry : times)
+    run->state.points[id_of(run->plan.points[entry.first])].ns_per_pixel.push_back(median(entry.second));
+  ++run->state.rounds;
+  return success();
+}
+
+// A state from a file may lack points.
+Status check_state(const Run& run) {
+  bool all = run.state.rounds <= kRoundsMax;
+  for (std::size_t i : round_order(run.plan, 0)) {
+    auto there = run.state.points.find(id_of(run.plan.points[i]));
+    std::size_t rounds = there == run.state.points.end() ? 0 : there->second.ns_per_pixel.size();
+    all = all && rounds == run.state.rounds;
+  }
+  return all ? success()
+             : failure("%.200s holds a sweep with configurations missing: use --restart to start over",
+                       run.options.folder.c_str());
+}
+
+Status measure_rounds(Run* run, bool* whole) {
+  *whole = true;
+  if (run->state.rounds >= run->options.rounds) return success();
+  double price = 0;
+  for (std::size_t i : round_order(run->plan, 0)) price += 1000 * run->plan.points[i].price;
+  RoundProgress progress;
+  progress.progress =
+      start_progress("configurations", static_cast<std::uint64_t>(price * (run->options.rounds - run->state.rounds)));
+  Status status;
+  while (*whole && status.ok && run->state.rounds < run->options.rounds) {
+    status = measure_round(run, &progress, whole);
+    if (status.ok) status = save_state(run->options.folder, run->state);
+  }
+  end_progress(&progress.progress);
+  return status;
+}
+
+Status add_strip(Run* run, const SweptKnob& swept, Sweep* sweep, bool* whole) {
+  CHECK_LE(swept.first + swept.count, sweep->measured.size());
+  Strip strip;
+  strip.knob = swept.knob->name;
+  std::vector<std::size_t> there;
+  for (std::size_t i = swept.first; i < swept.first + swept.count; ++i)
+    if (sweep->measured[i].missing.empty()) there.push_back(i);
+  for (std::size_t i : there) {
+    const SweepPoint& point = run->plan.points[i];
+    if (i != there.front() && i != there.back() && !point.is_default) continue;
+    Rig* rig;
+    RETURN_IF_ERROR(rig_for(&run->rigs, point.configuration, &rig));
+    double ns_per_pixel;
+    RETURN_IF_ERROR(time_frame(rig, point.configuration, run->options.seconds, &ns_per_pixel));
+    *whole = !interrupted;
+    if (!*whole) return success();
+    StripRow row;
+    RETURN_IF_ERROR(find_levels(*run, rig, point.configuration, &row.picture, nullptr));
+    *whole = !interrupted;
+    if (!*whole) return success();
+    row.label = point.knob + " " + point.value;
+    row.ms = sweep->measured[i].ns_per_pixel.value * 1e-6 * sweep->width * sweep->height;
+    row.flip = sweep->measured[i].flip;
+    if (is_paid_in_bytes(ends_of(*sweep, strip.knob))) row.bytes = sweep->measured[i].bytes_per_frame;
+    row.flip_map = flip_errors(run->reference.encoded, encoded_levels(row.picture), sweep->width, sweep->height,
+                               run->options.pixels_per_degree);
+    strip.rows.push_back(std::move(row));
+  }
+  sweep->strips.push_back(std::move(strip));
+  return success();
+}
+
+// Renders both references: the one that knobs are compared with, and the one that gives the converged model's error
+// against full transport.
+Status render_references(Run* run, Sweep* sweep, bool* whole) {
+  Rig* rig;
+  RETURN_IF_ERROR(reference_rig(&run->rigs, &rig));
+  Transport kind = chosen(run->options), other_kind = other_than(kind);
+  RETURN_IF_ERROR(render_reference(run->options, kind, rig, &run->state, &run->reference, whole));
+  if (!*whole) return success();
+  RETURN_IF_ERROR(render_reference(run->options, other_kind, rig, &run->state, &run->other, whole));
+  if (!*whole) return success();
+  const ReferencePictures &reference = run->reference, &other = run->other;
+  sweep->other_samples = static_cast<std::uint32_t>(other.samples), sweep->other_flip = other.flip;
+  sweep->reference_samples = static_cast<std::uint32_t>(reference.samples);
+  sweep->reference_rmse = reference.rmse, sweep->reference_flip = reference.flip;
+  sweep->reference_picture = reference.levels;
+  sweep->model_flip = mean_of(
+      flip_errors(reference.encoded, other.encoded, sweep->width, sweep->height, run->options.pixels_per_degree));
+  sweep->model_flip_error = reference.flip + other.flip;
+  std::vector<double> of_one = reference.one, of_other = reference.other, none(of_one.size(), 0.0);
+  for (std::size_t i = 0; i < none.size(); ++i) of_one[i] -= other.one[i], of_other[i] -= other.other[i];
+  sweep->model_rmse = unbiased_rmse(of_one, of_other, none);
+  run->rigs.by_columns.erase(kReferenceColumns);
+  return success();
+}
+
+Status check_options(const AccuracyOptions& o) {
+  if (find_output_format(o.output) < 0)
+    return failure("--pixel-format is '%s': it must be rgb565, rgb565-dithered or rgb888", o.output.c_str());
+  CHECK(o.reference == "model" || o.reference == "physical");  // named
+  if (o.rounds < 1 || o.rounds > kRoundsMax)
+    return failure("--rounds is %u: it must lie in 1 … %u", o.rounds, kRoundsMax);
+  if (!(o.price_limit >= 1 && o.price_limit <= 1e6))
+    return failure("--price-limit is %g: it must lie in 1 … 1000000", o.price_limit);
+  RETURN_IF_ERROR(check_limit(Quantity::seconds, o.seconds, "--time"));
+  if (o.reference_file.empty() && (o.reference_samples == 1 || o.reference_samples > 1000000))
+    return failure("--reference-samples is %u: it must lie in 2 … 1000000", o.reference_samples);
+  if (!(o.pixels_per_degree >= 1 && o.pixels_per_degree <= 1000))
+    return failure("--pixels-per-degree is %g: it must lie in 1 … 1000", o.pixels_per_degree);
+  return success();
+}
+
+void describe(const Run& run, const Rig& rig, Sweep* sweep) {
+  const AccuracyOptions& o = run.options;
+  const Settings& settings = rig.baseline.settings;
+  sweep->scene = o.common.scene;
+  sweep->machine = std::to_string(settings.threads) + (settings.threads == 1 ? " thread, " : " threads, ") +
+                   isa_name(active_isa()) + emulation_text(rig.opened.renderer.pace);
+  sweep->width = settings.width, sweep->height = settings.height;
+  sweep->pixels_per_degree = o.pixels_per_degree;
+  sweep->reference = o.reference;
+  sweep->output = o.output;
+  sweep->notes = run.plan.notes;
+}
+
+// Counts instructions if the CPU does not and has counted none of this sweep.
+Status count_otherwise(Run* run, const Rig& rig, bool by_cpu, Sweep* sweep, bool* whole) {
+  for (const auto& point : run->state.points) by_cpu = by_cpu || std::isfinite(point.second.instructions_per_pixel);
+  if (by_cpu && run->state.counted.empty()) return success();
+  std::string note;
+  count_by_valgrind(run->options, rig, run->plan, &run->state, whole, &note);
+  sweep->notes.push_back(note);
+  return save_state(run->options.folder, run->state);
+}
+
+}  // namespace
+
+Status measure_sweep(const AccuracyOptions& options, Sweep* sweep, bool* whole, SweptFront* front) {
+  CHECK(sweep != nullptr && whole != nullptr);
+  Run run = {options, {options, {}}, {}, {}, {}, {}};
+  *whole = true;
+  RETURN_IF_ERROR(check_options(options));
+  bool counts = platform::start_instruction_count();  // including later threads
+  RETURN_IF_ERROR(plan_rigs(&run.rigs, &run.plan));
+  const Rig& rig = *run.rigs.by_columns[kCornellSphereColumns];
+  print_notes(rig.opened);
+  describe(run, rig, sweep);
+  RETURN_IF_ERROR(open_state(options.folder, key_of(run, rig), options.restart, &run.state));
+  RETURN_IF_ERROR(check_state(run));
+  RETURN_IF_ERROR(render_references(&run, sweep, whole));
+  if (!*whole) return success();
+  RETURN_IF_ERROR(measure_rounds(&run, whole));
+  if (!*whole) return success();
+  RETURN_IF_ERROR(count_otherwise(&run, rig, counts, sweep, whole));
+  if (!*whole) return success();
+  std::vector<PointFigures> figures;
+  for (const SweepPoint& point : run.plan.points) figures.push_back(run.state.points[id_of(point)]);
+  sweep->rounds = run.state.rounds;
+  sum_up(run.plan, figures, sweep);
+  if (front) *front = {front_of_sweep(run.plan, *sweep), rig.front_path};
+  for (const SweptKnob& swept : run.plan.knobs) {
+    RETURN_IF_ERROR(add_strip(&run, swept, sweep, whole));
+    if (!*whole) return success();
+  }
+  return success();
+}
+
+}  // namespace pocketray

@@ -1,0 +1,49 @@
+// Reads glTF 2.0, OBJ/MTL, PLY and, if assimp is built in, its formats into a Scene. desktop/import/ implements it:
+// device builds have no definition. Uses exceptions and the heap, but no exception escapes.
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "base/status.h"
+#include "scene/scene.h"
+
+namespace pocketray {
+
+// Up axis of a file: Z in PLY and STL, the convention of scanners and printers; Y in OBJ and OFF.
+enum class UpAxis { of_format, y, z };
+
+struct ImportOptions {
+  std::uint32_t texture_side_max = 512;  // larger textures are halved until they fit
+  bool mip_maps = true;                  // store smaller levels of textures
+  float crease_angle = 40;               // degrees; meshes without normals are smoothed below it (glTF: flat)
+  bool strict = false;                   // refuse vertices that are not finite instead of leaving out their faces
+  UpAxis up = UpAxis::of_format;         // for formats that do not specify it: OBJ, PLY, STL, OFF
+  bool animations = true;                // false: the model at rest
+  // Files that the model names must lie below this folder, and so must the model. Empty: the model's own folder.
+  std::string root;
+  std::uint64_t byte_count_max = std::uint64_t(1) << 30;  // refuses larger scenes
+  std::uint32_t cpu_seconds_max = 120;                    // limit for formats read by assimp
+};
+
+// Names, which may repeat, and bounds in world space at time 0.
+using NamedBoxes = std::vector<std::pair<std::string, Box>>;
+
+struct ImportedScene {
+  Scene scene;
+  std::shared_ptr<void> storage;            // owns what `scene` points at
+  std::string warning;                      // one line listing ignored contents; empty if none
+  std::vector<std::string> material_names;  // of the first materials; empty where the file has none
+  std::vector<std::string> files;           // every file read for it: its own, buffers, textures, …
+  NamedBoxes parts;                         // named nodes, objects or groups, each with its descendants
+};
+
+// Reads the file at `path`; detects its format by the ending and, for glTF, by its first bytes.
+Status import_scene(const std::string& path, const ImportOptions& options, ImportedScene* result);
+
+// Lists the file endings that this build reads, for help: "gltf glb obj ply …".
+std::string import_formats();
+
+}  // namespace pocketray

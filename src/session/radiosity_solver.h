@@ -1,0 +1,41 @@
+// Solves the indirect light of a scene at time 0: patches, their exchange of light, and what arrives at the nodes of
+// the reconstruction. desktop/radiosity/ implements it: device builds have no definition.
+#pragma once
+#include <functional>
+#include <vector>
+
+#include "base/status.h"
+#include "shade/frame_data.h"
+
+namespace pocketray {
+
+using SolverProgress = std::function<bool(double share)>;  // false: stop
+
+struct RadiosityOptions {
+  std::uint32_t patch_count = 1200;  // roughly
+  double nodes_per_patch = 2;        // along a side, of the grids
+  double converged = 1e-4;           // unshot share of the emitted light
+  std::uint32_t threads = 1;
+};
+
+// The arrays of Scene.
+struct RadiositySolution {
+  std::vector<RadiosityInfo> info;
+  std::vector<std::uint32_t> triangles;
+  std::vector<RadiosityGrid> grids;
+  std::vector<RadiosityNode> nodes;
+  std::vector<RadiosityCorners> corners;
+  std::vector<Vec3> values;
+  std::vector<RadiositySplit> splits;
+  std::vector<RadiosityCut> cuts;
+  std::uint32_t patch_count = 0, shots = 0;
+  double unshot = 0;  // share of the emitted light
+  std::size_t bytes() const;
+  void view(Scene* scene) const;  // the scene refers to it
+};
+
+// `frame` is prepared for time 0. `progress` may stop it, which leaves no solution.
+Status solve_radiosity(const FrameData& frame, const RadiosityOptions& options, const SolverProgress& progress,
+                       RadiositySolution* solution);
+
+}  // namespace pocketray

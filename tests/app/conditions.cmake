@@ -1,0 +1,25 @@
+# A server under outside trouble, and a second implementation of the protocol, in Python.
+if(POCKETRAY_NETWORK AND NOT CMAKE_CROSSCOMPILING)
+  add_test(NAME serve COMMAND bash ${CMAKE_CURRENT_SOURCE_DIR}/tests/app/serve_test.sh $<TARGET_FILE:pocketray_sealed>)
+  find_program(PYTHON3 python3)
+  if(PYTHON3)
+    foreach(name conformance reconnects)
+      add_test(NAME ${name} COMMAND ${PYTHON3} ${CMAKE_CURRENT_SOURCE_DIR}/tests/wire/${name}.py
+        $<TARGET_FILE:pocketray_sealed>)
+    endforeach()
+  else()
+    message(STATUS "no python3: skipping the tests of conformance and reconnects")
+  endif()
+endif()
+if(NOT CMAKE_CROSSCOMPILING)
+  add_test(NAME numbers COMMAND bash ${CMAKE_CURRENT_SOURCE_DIR}/tests/app/numbers_test.sh $<TARGET_FILE:pocketray_sealed>)
+endif()
+if(CMAKE_CROSSCOMPILING AND POCKETRAY_CPU_NAME)
+  add_test(NAME wrong_cpu COMMAND bash ${CMAKE_CURRENT_SOURCE_DIR}/tests/app/wrong_cpu_test.sh $<TARGET_FILE:pocketray>
+    ${CMAKE_SYSTEM_PROCESSOR})
+  set_tests_properties(wrong_cpu PROPERTIES SKIP_RETURN_CODE 77)
+endif()
+if(CMAKE_CROSSCOMPILING AND POCKETRAY_STATIC AND CMAKE_OBJCOPY AND CMAKE_STRIP)
+  add_test(NAME device_parts COMMAND bash ${CMAKE_CURRENT_SOURCE_DIR}/tests/tidy/device_parts_test.sh
+    ${CMAKE_CURRENT_SOURCE_DIR}/src $<TARGET_FILE:pocketray>.debug ${CMAKE_NM})
+endif()

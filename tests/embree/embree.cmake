@@ -1,0 +1,20 @@
+# Depth compared with Embree's, if installed.
+find_package(embree 3 QUIET)
+if(embree_FOUND AND NOT CMAKE_CROSSCOMPILING)
+  add_executable(test_embree $<TARGET_OBJECTS:test_main> tests/embree/depth_test.cpp)
+  target_include_directories(test_embree SYSTEM PRIVATE ${DOCTEST_INCLUDE} ${EMBREE_INCLUDE_DIRS})
+  target_compile_definitions(test_embree PRIVATE POCKETRAY_SHARED="${POCKETRAY_SHARED}")
+  target_link_libraries(test_embree PRIVATE pocketray_app embree)
+  add_test(NAME embree COMMAND test_embree)
+  # The comparison of speed: CTest checks that it runs, `make bench-embree` measures.
+  if(POCKETRAY_BENCH)
+    file(GLOB sources CONFIGURE_DEPENDS tests/bench/*.cpp)
+    add_executable(bench_embree ${sources})
+    target_include_directories(bench_embree PRIVATE tests)
+    target_include_directories(bench_embree SYSTEM PRIVATE ${EMBREE_INCLUDE_DIRS})
+    target_compile_definitions(bench_embree PRIVATE POCKETRAY_SHARED="${POCKETRAY_SHARED}"
+      POCKETRAY_CACHE="${CMAKE_CURRENT_BINARY_DIR}/models")
+    target_link_libraries(bench_embree PRIVATE pocketray_app embree)
+    add_test(NAME bench_embree COMMAND bench_embree --scene cornell --size 32x24 --rounds 1 --build-rounds 1)
+  endif()
+endif()

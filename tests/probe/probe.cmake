@@ -1,0 +1,15 @@
+if(POCKETRAY_PROBE)
+  # The core compiled again with a counter at every effect's entry, which traps if the plan says that the effect is absent.
+  add_library(pocketray_probe STATIC EXCLUDE_FROM_ALL ${POCKETRAY_CORE})
+  target_include_directories(pocketray_probe PUBLIC src)
+  target_compile_definitions(pocketray_probe PUBLIC POCKETRAY_PROBE_EFFECTS)
+  target_compile_options(pocketray_probe PRIVATE -fno-exceptions -fno-rtti -O1)  # builds sooner
+  target_link_libraries(pocketray_probe PUBLIC pocketray_flags ZLIB::ZLIB Threads::Threads)
+  file(GLOB sources CONFIGURE_DEPENDS tests/probe/*.cpp)
+  add_executable(test_probe $<TARGET_OBJECTS:test_main> ${sources} ${POCKETRAY_TEST_SUPPORT})
+  target_include_directories(test_probe PRIVATE tests)
+  target_include_directories(test_probe SYSTEM PRIVATE ${DOCTEST_INCLUDE})
+  target_compile_definitions(test_probe PRIVATE $<$<BOOL:${CMAKE_CROSSCOMPILING}>:POCKETRAY_EMULATED>)
+  target_link_libraries(test_probe PRIVATE pocketray_probe)
+  add_test(NAME probe COMMAND test_probe)
+endif()
