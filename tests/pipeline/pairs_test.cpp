@@ -123,7 +123,7 @@ bool render_with_map(Renderer* renderer, const Picture& whole, double seconds) {
     lights[i] = renderer->image[row * kWidth + column];
   }
   std::copy(whole.begin(), whole.end(), renderer->image.begin());
-  const LightMap map = {grid, renderer->frame.camera, seconds, surfaces.data(), lights.data()};
+  const LightMap map = {grid, renderer->frame.view.camera, seconds, surfaces.data(), lights.data()};
   add_mapped_light(renderer, hits.data(), map, 0, kHeight);
   for (std::size_t i = 0; i < whole.size(); ++i)
     for (int k = 0; k < 3; ++k)

@@ -86,23 +86,23 @@ void add_to_cell(const ReferenceWay& way, double size_max, ReferenceCell* cell) 
 }
 
 // A spot as a sphere seen from a point: the vector to its centre, its radius and its distance, both squared.
-struct View {
+struct GuideView {
   Vec3d way;
   double radius2, distance2;
 };
-View view_of(const ReferenceSpot& spot, const Vec3d& point) {
+GuideView view_of(const ReferenceSpot& spot, const Vec3d& point) {
   Vec3d way = (spot.low + spot.high) * 0.5 - point, size = spot.high - spot.low;
   double radius = 0.5 * length(size) + spot.margin;
   return {way, radius * radius, dot(way, way)};
 }
-bool is_within(const View& view) { return !(view.distance2 > view.radius2); }
+bool is_within(const GuideView& view) { return !(view.distance2 > view.radius2); }
 // 1 − cosine of the half angle of the cone around it; from inside, all directions.
-double cone_height(const View& view) {
+double cone_height(const GuideView& view) {
   if (is_within(view)) return 2;
   double sine2 = view.radius2 / view.distance2;
   return sine2 / (1 + std::sqrt(1 - sine2));
 }
-bool is_towards(const Vec3d& direction, const View& view) {
+bool is_towards(const Vec3d& direction, const GuideView& view) {
   double along = dot(direction, view.way);
   return is_within(view) || (along > 0 && along * along >= view.distance2 - view.radius2);
 }
@@ -153,7 +153,7 @@ double guided_density(const ReferenceSurface& s, const Vec3d& to_viewer, const V
   if (!cell) return lobes;
   double spots = 0;
   for (std::uint32_t i = 0; i < cell->spot_count; ++i) {
-    View view = view_of(cell->spot[i], s.point);
+    GuideView view = view_of(cell->spot[i], s.point);
     if (is_towards(to_light, view)) spots += cell->spot[i].count / (2 * kPi * cone_height(view));
   }
   return (1 - kGuidedShare) * lobes + kGuidedShare * spots / cell->count;
@@ -168,7 +168,7 @@ bool sample_guided(const ReferenceSurface& s, const Vec3d& to_viewer, double cho
   double pick = choice / kGuidedShare * cell->count;
   std::uint32_t i = 0;
   for (; i + 1 < cell->spot_count && pick >= cell->spot[i].count; ++i) pick -= cell->spot[i].count;
-  View view = view_of(cell->spot[i], s.point);
+  GuideView view = view_of(cell->spot[i], s.point);
   Vec3d axis = is_within(view) ? Vec3d{0, 0, 1} : view.way / std::sqrt(view.distance2), tangent, bitangent;
   double below = cone_height(view) * pair.u, sine = std::sqrt(below * (2 - below)), phi = 2 * kPi * pair.v;
   make_basis(axis, &tangent, &bitangent);
