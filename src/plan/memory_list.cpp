@@ -57,6 +57,7 @@ constexpr MemoryRow kRows[] = {
 };
 
 Status find_need(const Scene& scene, const Settings& settings, EffectMask mask, PlannedFor* in) {
+  CHECK(in != nullptr);
   *in = {settings, mask};
   RETURN_IF_ERROR(light_point_count(scene, settings, in->mask, &in->light_points));
   in->selected_points = has(in->mask, Effect::source_selection) ? in->light_points : 0;
@@ -71,6 +72,7 @@ bool has_room(const MemoryRow& row, const Scene& scene, const PlannedFor& planne
 
 // Names the setting whose planned value would fit.
 Status refuse(const MemoryRow& row, const Scene& scene, const PlannedFor& planned, const Settings& settings) {
+  CHECK(row.part != nullptr && row.need != nullptr);
   for (const SettingRow& setting : kSettingList) {
     const double value = setting.field.get(settings), was = setting.field.get(planned.settings);
     if (value == was) continue;
@@ -90,6 +92,7 @@ Status refuse(const MemoryRow& row, const Scene& scene, const PlannedFor& planne
 // Sums the needs that frames cannot do without, with these settings or others that may follow. Returns false if the
 // lights need too many points.
 bool sum_needs(const Scene& scene, const Settings& settings, std::size_t* bytes) {
+  CHECK(bytes != nullptr);
   PlannedFor in;
   if (!find_need(scene, settings, plan_effects(scene, settings).mask, &in).ok) return false;
   *bytes = 0;
@@ -112,6 +115,7 @@ Status check_planned(const Scene& scene, const PlannedFor& planned, const Settin
 }
 
 Settings widest_settings(const Scene& scene, const Settings& settings, Array<const Quality> candidates) {
+  CHECK(candidates.data != nullptr || candidates.empty());
   Settings widest = settings;
   std::size_t most = 0, bytes;
   if (sum_needs(scene, settings, &bytes)) most = bytes;

@@ -44,6 +44,7 @@ struct NoteWriter {
 };
 
 NoteWriter begin_note(Notes* notes) {
+  CHECK(notes != nullptr);
   CHECK_LT(notes->count, kNoteMax);
   return {notes->text[notes->count++]};
 }
@@ -90,13 +91,19 @@ void note_forced(const Settings& settings, const EffectPlan& plan, Notes* notes)
   note.add_effects(refused, &plan);
 }
 
-const UseRow& row_of(Use use) { return kUseList[static_cast<int>(use)]; }
+const UseRow& row_of(Use use) {
+  const UseRow& row = kUseList[static_cast<int>(use)];
+  CHECK(row.use == use);  // rows stand in the order of their numbers
+  return row;
+}
 const char* name_of(const Uses& uses, Use use) {
   const char* given = uses.names[static_cast<int>(use)];
   return given ? given : row_of(use).name;
 }
 
 Status refusal(const Uses& uses, const UseRule& rule) {
+  CHECK(rule.because != nullptr && rule.use != rule.other);
+  CHECK(!rule.needs || row_of(rule.other).give != nullptr);
   const char *drop = row_of(rule.use).drop, *drop_other = row_of(rule.other).drop;
   const char *name = name_of(uses, rule.use), *other = name_of(uses, rule.other);
   const char* word = drop ? "" : "drop ";
@@ -135,6 +142,7 @@ const char* unshared_because(EffectMask mask) {
 }
 
 void trace_all_pixels(Quality* quality) {
+  CHECK(quality != nullptr);
   for (const SettingRow& row : kSettingList)
     if (row.effects & kInterpolatingEffects) row.field.set(quality, row.exact);
 }

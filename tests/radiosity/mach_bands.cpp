@@ -82,7 +82,8 @@ void BandsRig::solve(const FrameData& frame, const RadiosityOptions& options, Pi
   solution_ = RadiositySolution();
   const SolverProgress go_on = [](double) { return true; };
   PatchSolution solved(frame);
-  Status status = solve_patches(options, go_on, &solved);
+  Status status = divide_surfaces(options, &solved);
+  if (status.ok) status = exchange_light(options, go_on, &solved);
   REQUIRE_MESSAGE(status.ok, status.message);
   PatchLight light = light_of(solved);
   if (total_) light.reflected = light.all;

@@ -14,7 +14,7 @@ floors='accel=10 accuracy=12 app=0 base=6 brdf=0 import=1 indirect=0 reference=8
 count_checks() {  # ROOT FLOORS OVERALL : a line for each folder, and whether all have enough
   (cd "$1" && find src platform -name '*.h' -o -name '*.cpp' | sort | tr '\n' '\0' | xargs -0 -r awk -v floors="$2" -v usual=$usual -v overall="$3" '
     BEGIN { n = split(floors, entry); for (i = 1; i <= n; ++i) { split(entry[i], pair, "="); floor[pair[1]] = pair[2] } }
-    FNR == 1 { split(FILENAME, part, "/"); folder = part[1] == "src" ? part[2] : part[1] }
+    FNR == 1 { split(FILENAME, part, "/"); folder = part[1] != "src" ? part[1] : part[2] == "desktop" ? part[3] : part[2] }
     { ++lines[folder]; ++all_lines }
     /^[ \t]*([a-z][^"\/]*[ ;)])?(PLATFORM_)?CHECK(_[A-Z]+)?\(/ { ++checks[folder]; ++all_checks }
     END {

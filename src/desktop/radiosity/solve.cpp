@@ -28,9 +28,10 @@ Status solve_radiosity(const FrameData& frame, const RadiosityOptions& options, 
   constexpr double kPatchesShare = 0.3;  // of the time, measured
   *solution = RadiositySolution();
   PatchSolution solved(frame);
-  RETURN_IF_ERROR(solve_patches(
-      options, [&](double share) { return progress(kPatchesShare * share); }, &solved));
+  RETURN_IF_ERROR(divide_surfaces(options, &solved));
   solution->patch_count = static_cast<std::uint32_t>(solved.patches.size());
+  RETURN_IF_ERROR(exchange_light(
+      options, [&](double share) { return progress(kPatchesShare * share); }, &solved));
   solution->shots = solved.exchange.shots;
   solution->unshot = unshot_magnitude(solved.exchange) / solved.exchange.emitted;
   const PatchLight light = light_of(solved);

@@ -54,7 +54,7 @@ std::vector<Vec3d> first_light(const SceneRays& rays, const std::vector<Patch>& 
 
 }  // namespace
 
-Status solve_patches(const RadiosityOptions& options, const SolverProgress& progress, PatchSolution* solved) {
+Status divide_surfaces(const RadiosityOptions& options, PatchSolution* solved) {
   CHECK(solved != nullptr);
   SceneRays& rays = solved->rays;
   const Scene& scene = *rays.frame.scene;
@@ -70,16 +70,22 @@ Status solve_patches(const RadiosityOptions& options, const SolverProgress& prog
                  &patches);
   uncover_patches(rays, options.threads, &patches);
   if (patches.empty()) return failure("the scene has no surface that light could reach");
-  std::vector<Outlook> looks;
-  add_backs(rays, options.threads, &patches, &looks);
+  add_backs(rays, options.threads, &patches, &solved->looks);
+  return success();
+}
+
+Status exchange_light(const RadiosityOptions& options, const SolverProgress& progress, PatchSolution* solved) {
+  CHECK(solved != nullptr && solved->looks.size() == solved->patches.size());
+  const std::vector<Patch>& patches = solved->patches;
+  const std::vector<Outlook>& looks = solved->looks;
   std::vector<double> closed, area;
   std::vector<Vec3d> albedo;
   for (std::size_t i = 0; i < patches.size(); ++i) {
     closed.push_back(looks[i].front + looks[i].back), area.push_back(patches[i].area);
     albedo.push_back(patches[i].albedo);
   }
-  const std::vector<Vec3d> first = first_light(rays, patches, looks, options.threads);
-  const FormFactors factors = find_form_factors(rays, patches, closed, options.threads, progress);
+  const std::vector<Vec3d> first = first_light(solved->rays, patches, looks, options.threads);
+  const FormFactors factors = find_form_factors(solved->rays, patches, closed, options.threads, progress);
   if (factors.count != patches.size()) return failure("interrupted");
   solved->exchange = start_exchange(area, albedo, first);
   if (!(solved->exchange.emitted > 0)) return failure("no light reaches a surface: there is none to solve for");

@@ -1,4 +1,4 @@
-// First step of a solution: patches, and the light that they exchange.
+// First steps of a solution: patches, and the light that they exchange.
 #pragma once
 #include "desktop/radiosity/surfaces.h"
 #include "desktop/radiosity/transport.h"
@@ -12,10 +12,12 @@ struct PatchSolution {
   SceneRays rays;
   Surfaces surfaces;
   std::vector<Patch> patches;
+  std::vector<Outlook> looks;  // of each patch
   Exchange exchange;
 };
 
-// Calls `progress` with the share of this step.
-Status solve_patches(const RadiosityOptions& options, const SolverProgress& progress, PatchSolution* solved);
+Status divide_surfaces(const RadiosityOptions& options, PatchSolution* solved);
+// Calls `progress` with the share of this step. Form factors take 4 bytes for each pair of patches.
+Status exchange_light(const RadiosityOptions& options, const SolverProgress& progress, PatchSolution* solved);
 
 }  // namespace pocketray

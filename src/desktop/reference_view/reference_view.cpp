@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "base/check.h"
 #include "base/limits.h"
 #include "base/seal.h"
 #include "desktop/accuracy/display.h"
@@ -110,6 +111,7 @@ bool take_row(void* context, std::uint32_t thread, std::uint32_t row) {
 
 // Adds one sample per pixel, for as many rows as time allows.
 void trace_pass(ReferenceView* view, Workers* workers, std::uint64_t deadline_ns) {
+  CHECK_LT(view->row, view->height);
   Pass pass = {view, deadline_ns};
   view->row = share_items(workers, view->row, view->height, take_row, &pass);
   if (view->row < view->height) return;
@@ -118,6 +120,8 @@ void trace_pass(ReferenceView* view, Workers* workers, std::uint64_t deadline_ns
 }
 
 std::vector<Vec3> mean_of_seeds(const ReferenceView& view, std::initializer_list<std::uint32_t> seeds) {
+  CHECK_GT(view.samples, 0u);
+  CHECK_GT(seeds.size(), 0u);
   double scale = 1.0 / (view.samples * static_cast<double>(seeds.size()));
   std::vector<Vec3> mean(view.shown.size());
   for (std::size_t i = 0; i < mean.size(); ++i) {
