@@ -13,7 +13,7 @@ constexpr std::uint16_t kEscape = 1, kBackspace = 14, kTab = 15, kE = 18, kT = 2
 }
 
 // Unless measured, `slowdown` is estimated: clocks per pixel / clock rate, divided by 488 and 515 ns, the cost of
-// the scenes cornell and seesaw at 320 × 240 on one core of an AMD EPYC (README.md), as the geometric mean of both.
+// the scenes cornell and seesaw at 320 × 240 on the core that 1 stands for, as the geometric mean of both.
 // `make bench-device` counts the clocks, as instructions weighted by class: 39,000 and 56,000 in the armel build,
 // whose floats are software, 7,000 and 10,300 in the armhf build (tests/bench/device/: expected.json,
 // profiles_test.py). The weights are guesses and ignore cache misses; latency and jitter are guesses unless a source
