@@ -78,11 +78,21 @@ std::uint32_t divide(const Scene& scene, std::uint32_t material, LampPieces* all
 
 }  // namespace
 
-bool is_part_of(const Scene& scene, const Lamp& lamp, std::uint32_t triangle) {
+Lamp undivided_lamp(const Scene& scene, std::uint32_t material) {
+  CHECK_LT(material, scene.materials.count);
+  Lamp lamp = {material, kNone, 0, 0};
+  for (std::uint32_t i = 0; i < scene.triangles.count; ++i) {
+    if (scene.triangles[i].material() != material) continue;
+    if (lamp.end == 0) lamp.begin = i;
+    lamp.end = i + 1;
+  }
+  return lamp;
+}
+
+bool is_of_piece(const Scene& scene, const Lamp& lamp, std::uint32_t triangle) {
   CHECK_LE(lamp.end, scene.triangles.count);
-  if (triangle < lamp.begin || triangle >= lamp.end || scene.triangles[triangle].material() != lamp.material)
-    return false;
-  return lamp.piece == kNone || lamp.piece == triangle || is_in_plane(scene, lamp.piece, triangle);
+  CHECK_LT(lamp.piece, scene.triangles.count);
+  return lamp.piece == triangle || is_in_plane(scene, lamp.piece, triangle);
 }
 
 LampPieces find_lamp_pieces(const Scene& scene, Array<const Material> materials) {

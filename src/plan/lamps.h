@@ -24,8 +24,17 @@ struct LampPieces {
 // Finds the pieces of lamps whose emission is in `materials`, one for each of the scene's materials. O(triangles).
 LampPieces find_lamp_pieces(const Scene& scene, Array<const Material> materials);
 
+// Returns the lamp of all triangles of a material.
+Lamp undivided_lamp(const Scene& scene, std::uint32_t material);
+
+// Returns whether a triangle of the lamp's material lies in the plane of its piece.
+bool is_of_piece(const Scene& scene, const Lamp& lamp, std::uint32_t triangle);
 // Returns whether a triangle of the scene belongs to the lamp.
-bool is_part_of(const Scene& scene, const Lamp& lamp, std::uint32_t triangle);
+inline bool is_part_of(const Scene& scene, const Lamp& lamp, std::uint32_t triangle) {
+  if (triangle < lamp.begin || triangle >= lamp.end || scene.triangles[triangle].material() != lamp.material)
+    return false;
+  return lamp.piece == kNone || is_of_piece(scene, lamp, triangle);
+}
 
 inline bool is_emissive(const Material& m) { return !is_zero(m.emission); }
 
@@ -38,7 +47,7 @@ void each_lamp(const Scene& scene, Array<const Material> materials, Visit visit)
     bool is_divided = false;
     for (std::uint32_t i = 0; i < pieces.count; ++i)
       if (pieces.piece[i].material == m) visit(pieces.piece[i]), is_divided = true;
-    if (!is_divided) visit(Lamp{m, kNone, 0, scene.triangles.count});
+    if (!is_divided) visit(undivided_lamp(scene, m));
   }
 }
 
