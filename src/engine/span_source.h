@@ -39,6 +39,9 @@ struct SpanSource {
   bool (*finished)(void* context, const SpanBatch& batch) = nullptr;
   // Packs the pixels just traced for display; counts as the batch's work. Null: nothing to do.
   void (*pack)(void* context, const SpanBatch& batch) = nullptr;
+  // Attends to links, the only place in a frame that may wait for them. Called after a batch that does not complete the
+  // frame. Null: there are none.
+  void (*poll)(void* context, const SpanBatch& batch) = nullptr;
 
   Aov aov = Aov::none;
   std::uint64_t deadline_ns =

@@ -45,6 +45,7 @@ bool trace_batches(Renderer* renderer, const SpanSource& source) {
     source.next(source.context, &batch);
     if (batch.span_count > 0) trace_batch(renderer, source, &batch);
     if (source.finished(source.context, batch)) return true;
+    if (source.poll) source.poll(source.context, batch);
   } while (source.deadline_ns == kNoDeadline || now_ns(*renderer, source) < source.deadline_ns);
   return false;
 }

@@ -151,11 +151,16 @@ bool merge_rows(void* context, const SpanBatch& batch) {
     end_client_frame(client);
     return true;
   }
-  const bool was_shown = client->coarse.shown;
-  advance_client(client, is_tracing || s.lights ? 0 : kWaitNs);
-  s.lights = false;
-  if (client->coarse.shown && !was_shown) *s.coarse_comes = true;
   return false;
+}
+
+// Waits for rows if the device has nothing to do.
+void poll_servers(void* context, const SpanBatch& batch) {
+  ClientRows& s = *static_cast<ClientRows*>(context);
+  const bool is_tracing = batch.span_count > 0, was_shown = s.client->coarse.shown;
+  advance_client(s.client, is_tracing || s.lights ? 0 : kWaitNs);
+  s.lights = false;
+  if (s.client->coarse.shown && !was_shown) *s.coarse_comes = true;
 }
 
 // Prepares the frame and finds what the device must trace of each row. Sets `unchanged` and the time taken.
@@ -236,7 +241,7 @@ bool advance_frame(Renderer* renderer, Client* client, std::uint64_t deadline_ns
   ClientRows rows;
   rows.renderer = renderer, rows.client = client;
   SpanSource source = {&rows, next_rows, merge_rows, pack_batch};
-  source.deadline_ns = deadline_ns;
+  source.deadline_ns = deadline_ns, source.poll = poll_servers;
   std::atomic<bool> coarse_comes{false};
   rows.coarse_comes = &coarse_comes;
   source.stop = stop ? stop : &coarse_comes;
