@@ -20,7 +20,7 @@ enum class Followed : std::uint8_t {
   never,
 };
 
-// What servers can render of a frame that has the effect.
+// Parts of a frame with the effect that servers can render.
 enum class Shared : std::uint8_t { rows_and_light, rows };
 
 struct EffectRow {

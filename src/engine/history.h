@@ -1,5 +1,5 @@
-// What the renderer keeps of the last frame and the next may be built on, and the frame in progress. Only begin_frame()
-// and end_frame() open and close a frame (frame.h); everyone else reads this.
+// The frame in progress, and the last one as far as the next may be built on it. Only begin_frame() and end_frame()
+// open and close a frame (frame.h); everyone else reads this.
 #pragma once
 #include "engine/coherence_trial.h"
 #include "engine/span_list.h"

@@ -8,7 +8,7 @@
 
 namespace pocketray {
 
-// What the parts depend on besides the scene.
+// Settings, effects and lights that memory is planned for.
 struct PlannedFor {
   Settings settings;
   EffectMask mask = 0;

@@ -81,7 +81,7 @@ void note_setting(const SettingRow& row, const Scene& scene, const Asked& asked,
   }
 }
 
-// Of --effects all, none is asked for by name.
+// Notes effects that --effects names in vain; `all` names none.
 void note_forced(const Settings& settings, const EffectPlan& plan, Notes* notes) {
   if (settings.forced_on == kAllEffects) return;
   const EffectMask refused = settings.forced_on & ~settings.forced_off & ~plan.mask;

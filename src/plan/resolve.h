@@ -1,5 +1,5 @@
-// What goes together, derived from what effects (effect/effect_list.h), settings (effect/setting_list.h) and uses
-// (plan/use_list.h) declare. No other file has rules about two features.
+// Derives which features go together from the declarations of effects (effect/effect_list.h), settings
+// (effect/setting_list.h) and uses (plan/use_list.h). No other file has rules about two features.
 #pragma once
 #include "base/status.h"
 #include "effect/effect_plan.h"
@@ -30,7 +30,7 @@ struct Uses {
 // Refuses uses of which one rules out another, or lacks another that it needs.
 Status check_uses(const Uses& uses);
 
-// What was requested of an opened scene.
+// A request for pictures of an opened scene.
 struct Asked {
   const Settings& settings;
   const char* whole_because = nullptr;  // why coherence is not planned; null: it is

@@ -1,4 +1,4 @@
-// What a frame leaves out because it cannot be seen; branches.h.
+// Limits of the light that a frame may leave out because nobody would see it; branches.h.
 #pragma once
 #include <algorithm>
 #include <iterator>

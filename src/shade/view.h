@@ -1,4 +1,4 @@
-// What a frame is seen through.
+// The camera of a frame, the cones of its pixels, and the bodies that contain it.
 #pragma once
 #include "base/limits.h"
 #include "base/vec3.h"

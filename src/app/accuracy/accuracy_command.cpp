@@ -79,8 +79,8 @@ void add_accuracy_command(Command program, const Team& team, int* exit_status) {
   o->team = team;
   Command command = program.add_subcommand("accuracy", "measure the time cost of accuracy: sweep every setting");
   command.footer(
-      "Varies one setting at a time (samples, depth, points per area light, …), then several at once, then the "
-      "settings\n"
+      "Varies one setting at a time (samples, depth, points per area light, …), then several at once, "
+      "then the settings\n"
       "of each method of indirect light. Times each configuration in rounds of random order and compares its picture\n"
       "with a reference, by ꟻLIP and other metrics; fronts are drawn against both kinds of reference.\n"
       "The scene's options set the baseline. The output folder gets index.html with all results, its plots and\n"

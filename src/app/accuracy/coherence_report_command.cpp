@@ -93,9 +93,10 @@ Status measure(const ReportOptions& o, CoherenceReport* report) {
     RETURN_IF_ERROR(open_way(way, o, o.table, &coherent));
     if (way == Way::coherent) {
       print_notes(coherent);
-      if (!no_paper && unfollowed_because(coherent.renderer.effects.mask, true)) {
+      const char* because = no_paper ? nullptr : unfollowed_because(coherent.renderer.effects.mask, true);
+      if (because) {
         no_paper = true;
-        print_note("the paper's way is left out: its tables do not track which pixels share light");
+        print_note(std::string("the paper's way is left out: ") + because);
       }
       if (!range.given) range = whole_animation(whole.renderer.scene);
       describe(o, coherent.renderer, report);

@@ -1,5 +1,5 @@
-// What a client knows of a render server, by duty: the overture of its connection, its link, the rows and the light
-// that were requested of it, and the checks of its pixels.
+// A render server as its client knows it, by duty: the overture of its connection, its link, requested rows and light,
+// and the checks of its pixels.
 #pragma once
 #include "remote/client/verify.h"
 #include "remote/stream.h"
