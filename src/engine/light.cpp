@@ -16,6 +16,7 @@
 #include "shade/camera.h"
 #include "shade/filters.h"
 #include "shade/footprint.h"
+#include "shade/instances.h"
 #include "shade/interleaved.h"
 #include "shade/lattice.h"
 #include "shade/material_maps.h"

@@ -1,53 +1,107 @@
-// Instantiates a part of the kernel for every combination of the effects on which it depends; the plan's is selected
-// once per frame.
+// Instantiates a part of the kernel once for each combination of effects that its rules tell apart; the plan's is
+// selected once per frame.
 #pragma once
 #include <cstddef>
 #include <utility>
 
+#include "base/check.h"
 #include "effect/effect.h"
 
 namespace pocketray {
 
-constexpr std::size_t effect_count(EffectMask mask) {
-  std::size_t n = 0;
-  for (; mask; mask &= mask - 1) ++n;
-  return n;
-}
-
-// Effects of a mask as an array.
-template <EffectMask mask>
-struct EffectsOf {
-  Effect effects[effect_count(mask)] = {};
-  constexpr EffectsOf() {
-    std::size_t n = 0;
-    for (int i = 0; i < kEffectCount; ++i)
-      if (has(mask, static_cast<Effect>(i))) effects[n++] = static_cast<Effect>(i);
-  }
-  constexpr const Effect& operator[](std::size_t i) const { return effects[i]; }
+// Each instance that meets the condition also holds the code of some effects, which asks the plan at run time, and
+// lacks that of others. Rules apply in order. Fewer instances compile faster and take less memory.
+struct InstanceRule {
+  enum class Condition { any, none, not_all } condition;
+  EffectMask of;
+  EffectMask holds, lacks;
 };
 
-// Part has Function, kEffects (an array of Effect) and instance<mask>(), the function for a mask of those effects.
-template <class Part>
-struct Instantiations {
-  using Function = typename Part::Function;
-  static constexpr std::size_t kEffectsOfPart = sizeof Part::kEffects / sizeof Part::kEffects[0];
+constexpr InstanceRule with(EffectMask any_of, EffectMask holds, EffectMask lacks = 0) {
+  return {InstanceRule::Condition::any, any_of, holds, lacks};
+}
+constexpr InstanceRule without_any(EffectMask of, EffectMask lacks) {
+  return {InstanceRule::Condition::none, of, 0, lacks};
+}
+constexpr InstanceRule without_all(EffectMask of, EffectMask lacks) {
+  return {InstanceRule::Condition::not_all, of, 0, lacks};
+}
 
-  static constexpr EffectMask mask_of(std::size_t index) {
-    EffectMask mask = 0;
-    for (std::size_t i = 0; i < kEffectsOfPart; ++i)
-      if (index >> i & 1) mask |= bit(Part::kEffects[i]);
+constexpr bool is_met(const InstanceRule& rule, EffectMask mask) {
+  switch (rule.condition) {
+    case InstanceRule::Condition::any:
+      return (mask & rule.of) != 0;
+    case InstanceRule::Condition::none:
+      return (mask & rule.of) == 0;
+    case InstanceRule::Condition::not_all:
+      return (mask & rule.of) != rule.of;
+  }
+  return false;
+}
+
+// How a part of the kernel depends on effects.
+template <std::size_t rule_count>
+struct InstanceTable {
+  EffectMask effects;  // the others have no code in the part
+  InstanceRule rules[rule_count];
+
+  // Effects of the instance for a plan.
+  constexpr EffectMask instance_of(EffectMask plan) const {
+    EffectMask mask = plan & effects & kEffectsBuilt;
+    for (const InstanceRule& rule : rules)
+      if (is_met(rule, mask)) mask = (mask | (rule.holds & kEffectsBuilt)) & ~rule.lacks;
     return mask;
   }
-  template <std::size_t... index>
-  static Function pick(std::size_t wanted, std::index_sequence<index...>) {
-    static constexpr Function table[] = {Part::template instance<mask_of(index)>()...};
-    return table[wanted];
+};
+
+// Part has Function, kTable (an InstanceTable) and instance<mask>(), the function with the code of those effects.
+template <class Part>
+class Instantiations {
+ public:
+  using Function = typename Part::Function;
+
+  static Function find(EffectMask plan) {
+    return pick(Part::kTable.instance_of(plan), std::make_index_sequence<count()>());
   }
-  static Function find(EffectMask mask) {
-    std::size_t index = 0;
-    for (std::size_t i = 0; i < kEffectsOfPart; ++i)
-      if (has(mask, Part::kEffects[i])) index |= std::size_t(1) << i;
-    return pick(index, std::make_index_sequence<std::size_t(1) << kEffectsOfPart>());
+
+ private:
+  static constexpr EffectMask kVaries = Part::kTable.effects & kEffectsBuilt;
+
+  static constexpr EffectMask next_subset(EffectMask mask) { return (mask - kVaries) & kVaries; }
+
+  static constexpr std::size_t count() {
+    std::size_t n = 0;
+    EffectMask mask = 0;
+    do {
+      const EffectMask instance = Part::kTable.instance_of(mask);
+      if (instance == mask) ++n;
+      if (Part::kTable.instance_of(instance) != instance) return 0;
+      mask = next_subset(mask);
+    } while (mask);
+    return n;
+  }
+  static_assert(count() > 0, "rules that change their own result");
+
+  struct Masks {
+    EffectMask mask[count()] = {};
+    constexpr Masks() {
+      std::size_t n = 0;
+      EffectMask next = 0;
+      do {
+        if (Part::kTable.instance_of(next) == next) mask[n++] = next;
+        next = next_subset(next);
+      } while (next);
+    }
+  };
+  static constexpr Masks kMasks = {};
+
+  template <std::size_t... index>
+  static Function pick(EffectMask wanted, std::index_sequence<index...>) {
+    static constexpr Function table[] = {Part::template instance<kMasks.mask[index]>()...};
+    for (std::size_t i = 0; i < count(); ++i)
+      if (kMasks.mask[i] == wanted) return table[i];
+    CHECK(false);
+    return nullptr;
   }
 };
 

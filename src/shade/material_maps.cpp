@@ -6,7 +6,7 @@
 #include "effect/effect_probe.h"
 #include "scene/metallic_roughness.h"
 #include "shade/clear_coat.h"
-#include "shade/instantiate.h"
+#include "shade/instances.h"
 #include "shade/normal_map.h"
 #include "shade/texture.h"
 
@@ -67,12 +67,10 @@ float openness(const FrameData& frame, const MaterialMaps& maps, const Surface& 
   return 1 + maps.occlusion_strength * (open - 1);
 }
 
-// Instances with anisotropy, two sets of texture coordinates or clear coats contain the code of all maps; takes_part()
-// then checks the plan for the effect.
-constexpr EffectMask kHoldAll = bit(Effect::anisotropy) | bit(Effect::second_uv) | bit(Effect::clear_coat);
+// An instance that holds the code of all maps asks the plan for the effect.
 template <EffectMask mask>
 bool takes_part(const FrameData& frame, Effect effect) {
-  return !(mask & kHoldAll & kEffectsBuilt) || has(frame.mask, effect);
+  return !(mask & kHoldingMaps & kEffectsBuilt) || has(frame.mask, effect);
 }
 
 template <EffectMask mask, bool first>
@@ -120,25 +118,15 @@ void mapped_surface(const FrameData& frame, const Ray& ray, const Hit& hit, Surf
   }
 }
 
-constexpr EffectMask kOneSetEffects = kMapEffects & ~bit(Effect::second_uv) & ~bit(Effect::clear_coat);
 template <bool first>
 struct MapsPart {
   using Function = SurfaceFunction;
-  static constexpr EffectsOf<kOneSetEffects | bit(Effect::mip_map)> kEffects = {};
+  static constexpr auto kTable = kMapsTable;
   template <EffectMask mask>
   static constexpr Function instance() {
-    constexpr EffectMask code = has(mask, Effect::anisotropy) ? mask | kOneSetEffects : mask;
-    return mapped_surface<code, first>;
+    return mapped_surface<mask, first>;
   }
 };
-
-template <bool first>
-SurfaceFunction find_mapped_surface(EffectMask mask) {
-  constexpr EffectMask kFew = bit(Effect::second_uv) | bit(Effect::clear_coat);
-  if constexpr ((kFew & kEffectsBuilt) != 0)
-    if (mask & kFew & kEffectsBuilt) return mapped_surface<kMapEffects, first>;
-  return Instantiations<MapsPart<first>>::find(mask);
-}
 
 }  // namespace
 
@@ -159,8 +147,8 @@ void add_material_maps(FrameData* frame) {
   if (has(glow, Effect::occlusion)) glow &= ~bit(Effect::ambient);  // mapped_surface() adds it
   frame->kernels.plain_surface = find_surface_function(frame->mask & ~bit(Effect::emission) & ~kIndirectEffects);
   frame->kernels.glow = find_glow_function(glow);
-  frame->kernels.surface = find_mapped_surface<false>(frame->mask);
-  frame->kernels.first_surface = find_mapped_surface<true>(frame->mask);
+  frame->kernels.surface = Instantiations<MapsPart<false>>::find(frame->mask);
+  frame->kernels.first_surface = Instantiations<MapsPart<true>>::find(frame->mask);
 }
 
 }  // namespace pocketray

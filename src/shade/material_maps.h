@@ -6,9 +6,6 @@
 
 namespace pocketray {
 
-constexpr EffectMask kMapEffects = bit(Effect::metallic_roughness) | bit(Effect::normal_map) | bit(Effect::occlusion) |
-                                   bit(Effect::anisotropy) | bit(Effect::second_uv) | bit(Effect::clear_coat);
-
 // Applies the maps after the frame's surface functions, and adds the light of Kernels::surroundings.
 void add_material_maps(FrameData* frame);
 

@@ -1,6 +1,6 @@
 // Direct light by source selection, see source_selection.h.
 #pragma once
-#include "shade/direct.h"
+#include "shade/shadow.h"
 #include "shade/source_selection.h"
 #include "shade/tracer.h"
 

@@ -10,16 +10,12 @@
 #include "shade/branches.h"
 #include "shade/contact.h"
 #include "shade/direct.h"
-#include "shade/instantiate.h"
+#include "shade/instances.h"
 #include "shade/material_maps.h"
 #include "shade/selected_light.h"
 
 namespace pocketray {
 namespace {
-
-// Effects by which paths continue beyond their first hits.
-constexpr EffectMask kGoesOn =
-    bit(Effect::mirror) | bit(Effect::refraction) | bit(Effect::alpha_blend) | bit(Effect::back_face_culling);
 
 // Without refraction there are no media.
 struct NoMedia {};
@@ -207,18 +203,22 @@ inline Vec3 shade_lobes(Tracer* tracer, const Ray& ray, const Surface& s, const 
   return sum;
 }
 
+// True if an instance holds code of effects that its plan may lack: see kRadianceTable.
+template <EffectMask mask>
+constexpr bool kAsksPlan = has(mask, Effect::metallic_roughness) || has(mask, Effect::mip_map) ||
+                           has(mask, Effect::refraction);
+
 // Radiance leaving the surface back along the ray. `contact` must be set if the material transmits.
 template <EffectMask mask>
 Vec3 shade(Tracer* tracer, const Ray& ray, const Surface& s, const Contact* contact, const Path<mask>& path) {
-  if constexpr (has(mask, Effect::metallic_roughness) || has(mask, Effect::mip_map) || kHoldsRest<mask>) {
+  if constexpr (kAsksPlan<mask>) {
     const EffectMask plan = tracer->frame->mask;
     Material mapped;
     const Material* m = s.material;
     if constexpr (has(mask, Effect::metallic_roughness)) m = &lobes_at(*tracer->frame, s, &mapped);
-    // added to the mask by reduced(), not in the plan
-    const bool shines = !has(plan, Effect::specular) && !is_zero(m->specular);
-    const bool mirrors = !has(plan, Effect::mirror) && !is_zero(m->mirror);
-    const bool transmits = kHoldsRest<mask> && !has(plan, Effect::refraction) && !is_zero(m->transmission);
+    const bool shines = has(mask, Effect::specular) && !has(plan, Effect::specular) && !is_zero(m->specular);
+    const bool mirrors = has(mask, Effect::mirror) && !has(plan, Effect::mirror) && !is_zero(m->mirror);
+    const bool transmits = has(mask, Effect::refraction) && !has(plan, Effect::refraction) && !is_zero(m->transmission);
     if (shines || mirrors || transmits) {
       if (m != &mapped) mapped = *m;
       if (transmits) mapped.transmission = {0, 0, 0};
@@ -359,68 +359,15 @@ Vec3 primary_radiance(Tracer* tracer, const Ray& ray, const Hit& hit, const Surf
 
 struct RadiancePart {
   using Function = RadianceFunction;
-  static constexpr Effect kEffects[] = {Effect::shadow,
-                                        Effect::specular,
-                                        Effect::mirror,
-                                        Effect::refraction,
-                                        Effect::absorption,
-                                        Effect::alpha_blend,
-                                        Effect::back_face_culling,
-                                        Effect::metallic_roughness,
-                                        Effect::mip_map,
-                                        Effect::environment};
-  // Drops absorption without media, and distances along a path that ends at its first surface. With maps, footprints
-  // and environments, shade() skips lobes that the plan lacks at run time, which saves instances.
-  static constexpr EffectMask reduced(EffectMask mask) {
-    if (!has(mask, Effect::refraction)) mask &= ~bit(Effect::absorption);
-    if (!(mask & kGoesOn)) mask &= ~bit(Effect::mip_map);
-    if (has(mask, Effect::environment)) mask |= bit(Effect::metallic_roughness);
-    if (has(mask, Effect::metallic_roughness) || has(mask, Effect::mip_map))
-      mask |= bit(Effect::specular) | bit(Effect::mirror);
-    return mask;
-  }
+  static constexpr auto kTable = kRadianceTable;
   template <EffectMask mask>
   static constexpr Function instance() {
-    return primary_radiance<reduced(mask)>;
-  }
-};
-
-// Effects of paths and lobes, for instances that check the plan at run time.
-constexpr EffectMask kHeldEffects = bit(Effect::specular) | bit(Effect::mirror) | bit(Effect::refraction) |
-                                    bit(Effect::absorption) | bit(Effect::alpha_blend) | bit(Effect::back_face_culling);
-
-// Among many lights, everything else costs little: few instances contain the code of all effects, except those that
-// need more of a surface, and check the plan at run time.
-struct SelectingRadiancePart {
-  using Function = RadianceFunction;
-  static constexpr Effect kEffects[] = {Effect::metallic_roughness, Effect::mip_map, Effect::environment};
-  static constexpr EffectMask kRest = kHeldEffects | bit(Effect::source_selection) | bit(Effect::shadow);
-  template <EffectMask mask>
-  static constexpr Function instance() {
-    return primary_radiance<RadiancePart::reduced(mask | kRest)>;
-  }
-};
-
-// Few instances for clear coats as well, which cost more than checking.
-struct CoatedRadiancePart {
-  using Function = RadianceFunction;
-  static constexpr Effect kEffects[] = {Effect::shadow, Effect::mip_map, Effect::environment, Effect::source_selection};
-  static constexpr EffectMask kRest = kHeldEffects | bit(Effect::clear_coat) | bit(Effect::metallic_roughness);
-  template <EffectMask mask>
-  static constexpr Function instance() {
-    return primary_radiance<RadiancePart::reduced(mask | kRest)>;
+    return primary_radiance<mask>;
   }
 };
 
 }  // namespace
 
-RadianceFunction find_radiance_function(EffectMask mask) {
-  if (has(mask, Effect::anisotropy)) mask |= bit(Effect::metallic_roughness);  // which looks up lobes at the point
-  if constexpr (has(kAllEffects, Effect::clear_coat))
-    if (has(mask, Effect::clear_coat)) return Instantiations<CoatedRadiancePart>::find(mask);
-  if constexpr (has(kAllEffects, Effect::source_selection))
-    if (has(mask, Effect::source_selection)) return Instantiations<SelectingRadiancePart>::find(mask);
-  return Instantiations<RadiancePart>::find(mask);
-}
+RadianceFunction find_radiance_function(EffectMask mask) { return Instantiations<RadiancePart>::find(mask); }
 
 }  // namespace pocketray

@@ -7,6 +7,7 @@
 #include "shade/contact.h"
 #include "shade/dielectric.h"
 #include "shade/filters.h"
+#include "shade/instances.h"
 #include "shade/lights.h"
 #include "shade/media.h"
 #include "shade/point_groups.h"
@@ -17,20 +18,16 @@
 
 namespace pocketray {
 
-// True if an instance contains the code of nearly all effects: source selection and clear coats have few instances.
-template <EffectMask mask>
-constexpr bool kHoldsRest = has(mask, Effect::source_selection) || has(mask, Effect::clear_coat);
-
 // The effects to simulate.
 template <EffectMask mask>
 constexpr EffectMask plan_of(const FrameData& frame) {
-  if constexpr (kHoldsRest<mask>) return frame.mask;
-  return mask;
+  constexpr EffectMask held = held_contacts(mask);
+  if constexpr (held == 0) return mask;
+  return (mask & ~held) | (frame.mask & held);
 }
 
-// Effects on which transmitted light depends; the others are dropped to save instances.
-constexpr EffectMask kPassageEffects = bit(Effect::refraction) | bit(Effect::absorption) | bit(Effect::alpha_blend) |
-                                       bit(Effect::source_selection) | bit(Effect::clear_coat);
+// Effects on which transmitted light depends.
+constexpr EffectMask kPassageEffects = bit(Effect::refraction) | bit(Effect::absorption) | bit(Effect::alpha_blend);
 
 // Returns whether to skip a contribution of at most `bound`: the total skipped of a sample stays below half the
 // narrowest display level, so no pixel changes by more than one level.

@@ -3,7 +3,7 @@
 #include "effect/effect_probe.h"
 #include "indirect/surroundings.h"
 #include "shade/footprint.h"
-#include "shade/instantiate.h"
+#include "shade/instances.h"
 #include "shade/texture.h"
 
 namespace pocketray {
@@ -141,14 +141,9 @@ void evaluate_surface(const FrameData& frame, const Ray& ray, const Hit& hit, Su
   add_glow<mask>(frame, s);
 }
 
-// Virtual lights need shadow rays: virtual_light.h.
-constexpr EffectMask kStoredLight = IndirectList::kEffects & ~bit(Effect::instant_radiosity);
-
 struct SurfacePart {
   using Function = SurfaceFunction;
-  static constexpr EffectsOf<bit(Effect::smooth_normal) | bit(Effect::texture) | bit(Effect::vertex_color) |
-                             bit(Effect::emission) | bit(Effect::mip_map) | kStoredLight>
-      kEffects = {};
+  static constexpr auto kTable = kSurfaceTable;
   template <EffectMask mask>
   static constexpr Function instance() {
     return evaluate_surface<mask>;
@@ -157,47 +152,16 @@ struct SurfacePart {
 
 struct GlowPart {
   using Function = GlowFunction;
-  static constexpr EffectsOf<bit(Effect::texture) | bit(Effect::emission) | bit(Effect::mip_map) | kStoredLight>
-      kEffects = {};
+  static constexpr auto kTable = kGlowTable;
   template <EffectMask mask>
   static constexpr Function instance() {
     return add_glow<mask>;
   }
 };
 
-// Parts for scenes whose textures use both sets of texture coordinates: fewer instances, which look textures up by
-// Kernels::color.
-constexpr EffectMask kSecond = bit(Effect::second_uv) | bit(Effect::texture);
-struct SecondSurfacePart {
-  using Function = SurfaceFunction;
-  static constexpr EffectsOf<bit(Effect::smooth_normal) | bit(Effect::vertex_color) | bit(Effect::mip_map)> kEffects =
-      {};
-  template <EffectMask mask>
-  static constexpr Function instance() {
-    return evaluate_surface<mask | kSecond>;
-  }
-};
-struct SecondGlowPart {
-  using Function = GlowFunction;
-  static constexpr EffectsOf<kStoredLight> kEffects = {};
-  template <EffectMask mask>
-  static constexpr Function instance() {
-    return add_glow<mask | kSecond | bit(Effect::emission)>;
-  }
-};
-
-template <class Part, class SecondPart>
-typename Part::Function find_part(EffectMask mask, EffectMask needed) {
-  if constexpr (has(kAllEffects, Effect::second_uv))
-    if ((mask & needed) == needed) return Instantiations<SecondPart>::find(mask);
-  return Instantiations<Part>::find(mask);
-}
-
 }  // namespace
 
-GlowFunction find_glow_function(EffectMask mask) {
-  return find_part<GlowPart, SecondGlowPart>(mask, kSecond | bit(Effect::emission));
-}
+GlowFunction find_glow_function(EffectMask mask) { return Instantiations<GlowPart>::find(mask); }
 
 Vec3 curved_origin(const FrameData& frame, const Surface& s) {
   Surface moved = s;
@@ -216,8 +180,6 @@ Vec3 curved_origin(const FrameData& frame, const Surface& s) {
   return safe_origin(moved, 1);
 }
 
-SurfaceFunction find_surface_function(EffectMask mask) {
-  return find_part<SurfacePart, SecondSurfacePart>(mask, bit(Effect::second_uv));
-}
+SurfaceFunction find_surface_function(EffectMask mask) { return Instantiations<SurfacePart>::find(mask); }
 
 }  // namespace pocketray
