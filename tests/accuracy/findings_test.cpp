@@ -14,12 +14,14 @@ TEST_CASE("findings_front_is_sorted_by_time") {
   for (int i = 0; i < 4; ++i)
     sweep.measured.push_back(sample_measured("samples", std::to_string(i), 50 - 10 * i, 0.1 * i));
   sweep.measured[3].is_default = true;
-  for (std::size_t i : {1u, 2u, 3u, 4u}) sweep.measured[i].pareto = true;
   sweep.measured[2].missing = "no memory";
-  std::vector<const Measured*> front = front_of(sweep);
-  REQUIRE(front.size() == 2);
+  std::vector<const Measured*> front = front_of(sweep, Judge::truth);
+  REQUIRE(front.size() == 3);
   CHECK(front[0]->value == "3");
-  CHECK(front[1]->value == "0");
+  CHECK(front[1]->knob == "baseline");
+  CHECK(front[2]->value == "0");
+  for (Measured& m : sweep.measured) m.model.flip = 0.5;
+  CHECK(front_of(sweep, Judge::model).size() == 1);
 }
 
 // Goal: a knob's ends are its first and last value with figures. Method: the last has none; a claimed gain, one too
@@ -34,12 +36,18 @@ TEST_CASE("findings_ends_are_the_first_and_last_with_figures") {
   CHECK(ends.worst->value == "0");
   CHECK(ends.standard->value == "1");
   CHECK(ends.best->value == "2");
-  CHECK(gain_claimed(sweep, ends));
-  sweep.reference_flip = 0.0031;
-  CHECK(!gain_claimed(sweep, ends));
-  sweep.reference_flip = 0;
-  sweep.measured[1].flip = 0.001;
-  CHECK(!gain_claimed(sweep, ends_of(sweep, "depth")));
+  KnobFigures knob;
+  CHECK(gain_of(knob, ends) == doctest::Approx(0.03));
+  CHECK(gain_claimed(knob, ends));
+  set_noise(0.016, &sweep.measured[1], &sweep.measured[3]);
+  CHECK(!gain_claimed(knob, ends));
+  knob.judge = Judge::truth;
+  CHECK(gain_claimed(knob, ends));
+  knob.judge = Judge::model;
+  set_noise(0.001, &sweep.measured[1], &sweep.measured[3]);
+  CHECK(gain_claimed(knob, ends));
+  sweep.measured[1].model.flip = 0.001;
+  CHECK(!gain_claimed(knob, ends_of(sweep, "depth")));
   CHECK(!ends_of(sweep, "none").worst);
 }
 
@@ -51,7 +59,7 @@ TEST_CASE("findings_knobs_are_sorted_by_price") {
   add_knob(&sweep, "tiny", 2, 0.01);
   add_knob(&sweep, "dear", 4, 9);
   add_knob(&sweep, "cheap", 4, 2);
-  sweep.reference_flip = 0.005;
+  set_noise(0.03, &sweep.measured[2], &sweep.measured[3]);
   std::string order;
   for (const KnobFigures* knob : knobs_by_price(sweep)) order += knob->name + " ";
   CHECK(order == "cheap dear tiny unknown ");

@@ -122,7 +122,7 @@ TEST_CASE("page_text_is_for_readers") {
 TEST_CASE("page_is_well_formed_and_shows_each_knob") {
   Sweep sweep = sample_sweep();
   add_knob(&sweep, "<b>&\"it's\"", 3, 5);
-  sweep.scene = "a<b", sweep.model_flip = 0.2, sweep.notes = {"fog & mist are left out"};
+  sweep.scene = "a<b", sweep.model_distance = 0.2, sweep.notes = {"fog & mist are left out"};
   sweep.measured.back().missing = "takes > 64 MB";
   PagePictures pictures;
   pictures.reference_png = "png", pictures.strips["samples"] = "strip";
@@ -153,12 +153,14 @@ TEST_CASE("page_answers_what_buys_the_most") {
   CHECK(has(page, "Better and no slower: normals."));
   CHECK(page.find("buys the most") < page.find("id=\"samples\""));
   CHECK(!has(page, "<td class=\"weak\">"));
-  sweep.reference_flip = 0.01;
+  set_noise(0.1, &sweep);
   page = page_of(sweep, {});
   CHECK(has(page, "No gain that can be claimed: "));
   CHECK(has(page, "A reference with more samples may show one."));
   CHECK(!has(page, "buys the most accuracy per millisecond:"));
-  CHECK(has(page, "<td class=\"weak\"><i>0.0800</i></td>"));
+  CHECK(has(page, "<tr class=\"weak\">"));
+  sweep.model.rmse = 0.02;
+  CHECK(has(page_of(sweep, {}), "<td class=\"weak\"><i>0.0640</i></td>"));
 }
 
 // Goal: the page explains its times and intervals. Method: a value timed with another tracer; few rounds.
@@ -197,19 +199,25 @@ TEST_CASE("page_tells_what_is_paid_in_bytes") {
 // Method: pages with and without them.
 TEST_CASE("page_shows_either_reference_and_each_method") {
   Sweep sweep = sample_sweep();
-  CHECK(!has(page_of(sweep, {}), "The front against"));
+  for (Measured& m : sweep.measured) m.model.flip = kNotMeasured;
+  CHECK(!has(page_of(sweep, {}), "The front by the converged"));
+  sweep = sample_sweep();
   CHECK(!has(page_of(sweep, {}), "Methods of indirect light"));
   add_methods(&sweep);
   PagePictures pictures;
   pictures.plots["indirect"] = "<svg viewBox=\"0 0 1 1\"></svg>\n";
   std::string page = page_of(sweep, pictures);
   CHECK(markup_fault(page) == "");
-  CHECK(has(page, "The front against physical"));
-  CHECK(has(page, "of 256 samples per pixel, whose own error is FLIP 0.030"));
+  CHECK(has(page, "Judged by full light transport"));
+  CHECK(has(page, "(256 samples per pixel, own error FLIP 0.030)"));
+  CHECK(has(page, "<h2>The front by the converged lighting model</h2>"));
+  CHECK(!has(page, "What the format of the screen costs"));
   CHECK(has(page, "Methods of indirect light"));
   CHECK(has(page, "<tr><th>none</th><td>"));
-  sweep.reference = "physical";
-  CHECK(has(page_of(sweep, pictures), "The front against model"));
+  sweep.measured[0].flip_as = {0.21, 0.205, 0.19};
+  CHECK(has(page_of(sweep, pictures), "FLIP rgb565 0.210, rgb565-dithered 0.205, rgb888 0.190 from the truth"));
+  sweep.judge = Judge::model;
+  CHECK(has(page_of(sweep, pictures), "<h2>The front by full light transport</h2>"));
 }
 
 // Goal: every sweep produces all files, and missing figures do not appear as numbers. Method: a complete sweep; one
@@ -218,7 +226,8 @@ TEST_CASE("report_has_no_gaps") {
   Sweep whole = sample_sweep(), zero = empty_sweep(), missing = sample_sweep(), nothing = empty_sweep();
   add_methods(&whole);
   add_knob(&zero, "only", 1, kNotMeasured);
-  for (Measured& m : zero.measured) m.flip = m.flip_before = 0, m.errors = PictureErrors{0, 0, 0, 0, 0, INFINITY};
+  for (Measured& m : zero.measured)
+    m.model.flip = m.truth.flip = m.flip_before = 0, m.errors = PictureErrors{0, 0, 0, 0, 0, INFINITY};
   for (Measured& m : missing.measured) m.missing = "no memory";
   missing.knobs[0].slope = {0, -INFINITY, INFINITY};
   nothing.measured.clear(), nothing.reference_picture = {};
@@ -231,7 +240,7 @@ TEST_CASE("report_has_no_gaps") {
     REQUIRE_MESSAGE(status.ok, status.message);
     CHECK(drawn == (std::system("gnuplot -V >/dev/null 2>&1") == 0));
     std::vector<std::string> plots = {"/front", "/price"};
-    if (sweep == &whole) plots.insert(plots.end(), {"/front_physical", "/indirect"});
+    if (sweep == &whole) plots.insert(plots.end(), {"/front_model", "/indirect"});
     for (const KnobFigures& knob : sweep->knobs) {
       plots.push_back("/knob_" + knob.name);
       CHECK(has(content(folder.path + ("/strip_" + knob.name) + ".png"), "PNG"));

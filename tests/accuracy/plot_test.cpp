@@ -34,20 +34,23 @@ int points_of(const Plot& plot, const std::string& block) {
 TEST_CASE("plot_front_has_a_point_for_all_that_was_measured") {
   Sweep sweep = sample_sweep();
   sweep.measured[1].missing = "too large";
-  sweep.measured[3].flip = kNotMeasured;
-  mark_front(&sweep);
-  Plot plot = front_plot(sweep);
+  sweep.measured[3].truth.flip = kNotMeasured;
+  Plot plot = front_plot(sweep, Judge::truth);
   CHECK(plot.name == "front");
   CHECK(points_of(plot, "knob0") == 1);  // several
   CHECK(points_of(plot, "knob1") == 3);  // samples, 5 values
   CHECK(points_of(plot, "knob2") == 4);
   CHECK(points_of(plot, "knob3") == 2);
   CHECK(points_of(plot, "knob4") == 1);  // the baseline
-  REQUIRE(front_of(sweep).size() > 1);
-  CHECK(points_of(plot, "front") == static_cast<int>(front_of(sweep).size()));
+  REQUIRE(front_of(sweep, Judge::truth).size() > 1);
+  CHECK(points_of(plot, "front") == static_cast<int>(front_of(sweep, Judge::truth).size()));
   CHECK(has(plot.script, "set label '1"));
-  CHECK(has(plot.script, "not claimed"));
-  CHECK(has(plot.script, "set title 'Error over time, against the converged model'"));
+  CHECK(has(plot.script, "the reference''s own error"));
+  CHECK(has(plot.script, "set title 'Error over time, against full light transport'"));
+  plot = front_plot(sweep, Judge::model);
+  CHECK(plot.name == "front_model");
+  CHECK(points_of(plot, "knob1") == 4);
+  CHECK(has(plot.script, "set title 'Error over time, against the converged lighting model'"));
 }
 
 // Goal: each method of indirect light has a line through what no other of it beats, against full light transport
@@ -61,7 +64,7 @@ TEST_CASE("plot_of_methods_has_the_front_of_each") {
   REQUIRE(front.size() >= 2);
   for (std::size_t i = 1; i < front.size(); ++i) {
     CHECK(front[i]->ns_per_pixel.value > front[i - 1]->ns_per_pixel.value);
-    CHECK(front[i]->flip_other < front[i - 1]->flip_other);
+    CHECK(front[i]->truth.flip < front[i - 1]->truth.flip);
   }
   Plot plot = method_plot(sweep);
   CHECK(plot.name == "indirect");
@@ -71,11 +74,9 @@ TEST_CASE("plot_of_methods_has_the_front_of_each") {
   const std::size_t before = front.size();
   const_cast<Measured*>(front.back())->is_choice = false;
   CHECK(method_front(sweep, "none").size() == before - 1);
-  CHECK(physical_flip(sweep, sweep.measured[1]) == sweep.measured[1].flip_other);
-  sweep.reference = "physical";
-  CHECK(physical_flip(sweep, sweep.measured[1]) == sweep.measured[1].flip);
-  for (Measured& m : sweep.measured) std::swap(m.flip, m.flip_other);
-  CHECK(method_plot(sweep).script.find(plot.script.substr(0, 200)) == 0);
+  sweep.judge = Judge::model;
+  for (Measured& m : sweep.measured) m.model.flip = 0.5;
+  CHECK(method_front(sweep, "none").size() == before - 1);
   CHECK(methods_of(sample_sweep()).empty());
 }
 
@@ -114,7 +115,7 @@ TEST_CASE("plot_price_has_a_bar_for_each_knob_with_a_price") {
   CHECK(has(plot.script, "'free: better and no slower' at graph 0.0000, first 0"));
   CHECK(has(plot.script, "'0.700' at graph"));
   CHECK(has(plot.script, "'no gain that can be claimed' at graph 0.0000, first 3"));
-  sweep.reference_flip = 0.01;  // ten times this exceeds any gain
+  set_noise(0.1, &sweep);  // exceeds any gain
   CHECK(points_of(price_plot(sweep), "prices") == -1);
 }
 
@@ -137,18 +138,19 @@ TEST_CASE("plot_scripts_hold_numbers_alone") {
   blank.measured.clear();
   add_knob(&none, "one", 1, kNotMeasured);
   add_methods(&equal);
-  for (Measured& m : zero.measured) m.flip = 0, m.errors = PictureErrors{0, 0, 0, 0, 0, INFINITY};
-  for (Measured& m : equal.measured) m.flip = 0.25, m.ns_per_pixel = {40, 40, 40};
+  for (Measured& m : zero.measured) m.model.flip = m.truth.flip = 0, m.errors = PictureErrors{0, 0, 0, 0, 0, INFINITY};
+  for (Measured& m : equal.measured) m.model.flip = m.truth.flip = 0.25, m.ns_per_pixel = {40, 40, 40};
   Sweep mixed = sample_sweep();
   add_methods(&mixed);
-  mixed.measured[4].flip = mixed.measured[4].errors.rmse = 0;
+  mixed.measured[4].truth.flip = mixed.measured[4].model.flip = mixed.measured[4].errors.rmse = 0;
   mixed.measured[1].ns_per_pixel.low = -INFINITY, mixed.knobs[0].slope = {0, -INFINITY, INFINITY};
   for (const Sweep* sweep : {&none, &zero, &equal, &blank, &mixed}) {
-    std::string scripts = front_plot(*sweep).script + price_plot(*sweep).script + method_plot(*sweep).script;
+    std::string scripts =
+        front_plot(*sweep, Judge::truth).script + price_plot(*sweep).script + method_plot(*sweep).script;
     for (const KnobFigures& knob : sweep->knobs) scripts += knob_plot(*sweep, knob).script;
     for (std::string bad : {"nan", "inf", "∞", "–"}) CHECK_MESSAGE(!has(scripts, bad), bad);
   }
-  CHECK(has(front_plot(mixed).script, "set ytics ('0' "));
+  CHECK(has(front_plot(mixed, Judge::model).script, "set ytics ('0' "));
 }
 
 // Goal: an axis shows every value, even zero on a logarithmic one. Method: cases.

@@ -2,6 +2,7 @@
 #pragma once
 #include <cmath>
 
+#include "desktop/accuracy/findings.h"
 #include "desktop/accuracy/result.h"
 
 namespace pocketray {
@@ -18,10 +19,26 @@ inline Measured sample_measured(const std::string& knob, const std::string& valu
   m.knob = knob, m.value = value;
   m.ns_per_pixel = {ns_per_pixel, 0.97 * ns_per_pixel, 1.04 * ns_per_pixel};
   m.time_ratio = {ns_per_pixel / 40, 0.97 * ns_per_pixel / 40, 1.04 * ns_per_pixel / 40};
-  m.flip = flip, m.flip_before = 0.9 * flip;
+  m.model.flip = flip, m.truth.flip = flip, m.flip_before = 0.9 * flip;
   m.errors = {0.8 * flip, 2 * flip,    4 * flip,
               9 * flip,   -0.1 * flip, flip > 0 ? -20 * std::log10(0.8 * flip) : INFINITY};
   return m;
+}
+
+// Makes the standard error of the difference against the model that large.
+inline void set_noise(double error, Measured* a, Measured* b) {
+  const auto half = static_cast<float>(error);
+  a->model.one = {half}, a->model.other = {-half};
+  b->model.one = b->model.other = {0};
+}
+
+// Likewise between all configurations, which get a block each for noise of their own.
+inline void set_noise(double error, Sweep* sweep) {
+  for (std::size_t i = 0; i < sweep->measured.size(); ++i) {
+    std::vector<float> one(sweep->measured.size()), other(one.size());
+    one[i] = static_cast<float>(error * static_cast<double>(one.size()) / std::sqrt(2.0)), other[i] = -one[i];
+    sweep->measured[i].model.one = one, sweep->measured[i].model.other = other;
+  }
 }
 
 inline StripRow sample_row(const std::string& label, const Levels& reference, int shift) {
@@ -55,32 +72,25 @@ inline void add_sent_knob(Sweep* sweep) {
   *off = sample_measured("near-lossless", "off", time, 0.08), off->bytes_per_frame = 4000, off->is_default = true;
 }
 
-// Gives each configuration a method of indirect light in turn, and errors against the other reference that differ.
+// Gives each configuration a method of indirect light in turn, and errors against the truth that differ.
 inline void add_methods(Sweep* sweep) {
   constexpr const char* kMethods[] = {"radiosity", "none", "instant-radiosity"};
   for (std::size_t i = 0; i < sweep->measured.size(); ++i) {
     Measured* m = &sweep->measured[i];
-    m->indirect = kMethods[i % 3], m->flip_other = 0.1 + 0.5 * m->flip;
+    m->indirect = kMethods[i % 3], m->truth.flip = 0.1 + 0.5 * m->model.flip;
   }
-  sweep->other_flip = 0.03, sweep->other_samples = 256;
 }
 
 inline void mark_front(Sweep* sweep) {
-  std::vector<double> cost, error;
-  for (const Measured& m : sweep->measured) {
-    bool shown = m.missing.empty() && std::isfinite(m.flip);
-    cost.push_back(shown ? m.ns_per_pixel.value : INFINITY), error.push_back(shown ? m.flip : INFINITY);
-  }
-  std::vector<bool> front = pareto_front(cost, error);
-  for (std::size_t i = 0; i < front.size(); ++i) sweep->measured[i].pareto = front[i];
+  for (const Measured* m : front_of(*sweep, sweep->judge))
+    sweep->measured[static_cast<std::size_t>(m - sweep->measured.data())].pareto = true;
 }
 
 inline Sweep empty_sweep() {
   Sweep sweep;
-  sweep.scene = "cornell", sweep.machine = "2 threads, avx2", sweep.output = "rgb565 dithered",
-  sweep.reference = "model";
-  sweep.width = 32, sweep.height = 24, sweep.rounds = 15, sweep.reference_samples = 4096;
-  sweep.pixels_per_degree = 23.6, sweep.reference_flip = 0.0004, sweep.reference_rmse = 0.0003;
+  sweep.scene = "cornell", sweep.machine = "2 threads, avx2", sweep.output = "rgb565 dithered";
+  sweep.width = 32, sweep.height = 24, sweep.rounds = 15, sweep.pixels_per_degree = 23.6;
+  sweep.model = {4096, 0.0003, 0.0004}, sweep.truth = {256, 0.02, 0.03};
   sweep.reference_picture = sample_picture(32, 24, 0);
   sweep.measured = {sample_measured("baseline", "", 40, 0.08)};
   return sweep;

@@ -96,21 +96,3 @@ TEST_CASE("statistics_power_law_is_found") {
   CHECK((nothing.exponent < -1 || nothing.misfit > 0.1));
   CHECK(fit_power_law({1, 2, 3, 4}, {1, 2, 3, 4}, 0).misfit > 0.1);
 }
-
-// Goal: the front holds the points that no other beats. Method: brute force over random points with ties.
-TEST_CASE("statistics_pareto_front_is_what_nothing_beats") {
-  Rng rng = make_rng(6);
-  for (int round = 0; round < 50; ++round) {
-    std::vector<double> cost, error;
-    for (int i = 0; i < 20; ++i) cost.push_back(next_u32(&rng) % 8), error.push_back(next_u32(&rng) % 8);
-    std::vector<bool> front = pareto_front(cost, error);
-    for (std::size_t i = 0; i < cost.size(); ++i) {
-      bool beaten = false;
-      for (std::size_t j = 0; j < cost.size(); ++j) {
-        bool better = cost[j] < cost[i] || error[j] < error[i] || j < i;
-        beaten = beaten || (j != i && cost[j] <= cost[i] && error[j] <= error[i] && better);
-      }
-      CHECK(front[i] == !beaten);
-    }
-  }
-}

@@ -18,7 +18,7 @@ if "${run[@]}" --help | grep -q '^ *accuracy '; then
   check accuracy_says_that_it_is_kept grep -q 'so far are in sweep.*same command' interrupted.err
   expect accuracy 0 'index.html for the results' accuracy cube "${tiny[@]}" -o sweep --rounds 1 --json sweep.json
   check accuracy_table grep -q '^samples,16,[0-9]' sweep/accuracy.csv
-  check accuracy_json grep -q '"reference_flip": 0' sweep.json
+  check accuracy_json grep -q '"flip_truth": 0' sweep.json
   check accuracy_page grep -q '</html>' sweep/index.html
   # Goal: a scene that stores radiosity is swept by every method of indirect light and every reconstruction.
   expect bake_lit 0 'patches' bake cube --radiosity -o lit.pray

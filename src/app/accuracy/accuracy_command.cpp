@@ -82,7 +82,10 @@ void add_accuracy_command(Command program, const Team& team, int* exit_status) {
       "Varies one setting at a time (samples, depth, points per area light, …), then several at once, "
       "then the settings\n"
       "of each method of indirect light. Times each configuration in rounds of random order and compares its picture\n"
-      "with a reference, by ꟻLIP and other metrics; fronts are drawn against both kinds of reference.\n"
+      "with two references, path traced in double precision: full light transport, which is the truth, and the\n"
+      "renderer's own lighting model, converged, which shows the numerical error of samples, points and cut-offs\n"
+      "alone. ꟻLIP is how different two pictures look when one flips between them: .01 is hard to see, .05 seen at\n"
+      "once, .2 another picture. The front for --budget-ms and --flip-max follows the truth.\n"
       "The scene's options set the baseline. The output folder gets index.html with all results, its plots and\n"
       "strips, accuracy.csv and the references, which are also kept per scene and camera in the cache. If\n"
       "interrupted, samples of references and finished rounds are kept, and the same command continues. Times are of\n"
@@ -100,10 +103,10 @@ void add_accuracy_command(Command program, const Team& team, int* exit_status) {
   command
       .add_option(
           "--reference", o->reference,
-          "reference to compare with: model (the same lighting model, converged), physical (full light transport) or "
-          "a file of `pocketray reference`")
+          "judge of the front: physical (full light transport), model (the same lighting model, converged) or a file "
+          "of `pocketray reference`")
       .capture_default_str();
-  command.add_option("--reference-samples", o->reference_samples, "samples per pixel of the reference")
+  command.add_option("--reference-samples", o->reference_samples, "samples per pixel of the judge's reference")
       .default_str("2048 for model, 256 for physical");
   command.add_option("--rounds", o->rounds, "number of times to measure each configuration").capture_default_str();
   command.add_option("--pixels-per-degree,--ppd", o->pixels_per_degree, "pixels per degree of visual angle, for ꟻLIP")

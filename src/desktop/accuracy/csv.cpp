@@ -24,12 +24,12 @@ std::string csv_field(const std::string& text) {
 
 std::string sweep_csv(const Sweep& sweep) {
   std::string csv =
-      "knob,value,ns_per_pixel,ns_per_pixel_low,ns_per_pixel_high,flip,rmse,rel_mse,p99,max,bias,psnr,pareto,"
+      "knob,value,ns_per_pixel,ns_per_pixel_low,ns_per_pixel_high,flip_model,rmse,rel_mse,p99,max,bias,psnr,pareto,"
       "flip_before,time_ratio,time_ratio_low,time_ratio_high,instructions_per_pixel,bytes_per_frame,default,missing,"
-      "note,flip_other,indirect\n";
+      "note,flip_truth,flip_rgb565,flip_rgb565_dithered,flip_rgb888,indirect\n";
   for (const Measured& m : sweep.measured) {
     bool there = m.missing.empty();
-    const double figures[] = {m.ns_per_pixel.value, m.ns_per_pixel.low, m.ns_per_pixel.high, m.flip,
+    const double figures[] = {m.ns_per_pixel.value, m.ns_per_pixel.low, m.ns_per_pixel.high, m.model.flip,
                               m.errors.rmse,        m.errors.rel_mse,   m.errors.p99,        m.errors.max,
                               m.errors.bias,        m.errors.psnr};
     csv += csv_field(m.knob) + ',' + csv_field(m.value);
@@ -39,7 +39,9 @@ std::string sweep_csv(const Sweep& sweep) {
                               m.time_ratio.high, m.instructions_per_pixel, m.bytes_per_frame};
     for (double figure : further) csv += ',' + (there ? number(figure) : "");
     csv += std::string(m.is_default ? ",1," : ",0,") + csv_field(m.missing) + ',' + csv_field(m.note) + ',' +
-           (there ? number(m.flip_other) : "") + ',' + csv_field(m.indirect) + '\n';
+           (there ? number(m.truth.flip) : "");
+    for (double flip : m.flip_as) csv += ',' + (there ? number(flip) : "");
+    csv += ',' + csv_field(m.indirect) + '\n';
   }
   return csv;
 }

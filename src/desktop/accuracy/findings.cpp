@@ -3,15 +3,17 @@
 #include <algorithm>
 #include <cmath>
 
+#include "desktop/accuracy/claim.h"
 #include "desktop/accuracy/text.h"
 
 namespace pocketray {
 
 double ms_of(const Sweep& sweep, double ns_per_pixel) { return ns_per_pixel * sweep.width * sweep.height * 1e-6; }
 
-bool has_figures(const Measured& m) {
-  return m.missing.empty() && std::isfinite(m.flip) && std::isfinite(m.ns_per_pixel.value);
+bool is_judged(const Measured& m, Judge judge) {
+  return m.missing.empty() && std::isfinite(distance_to(m, judge).flip) && std::isfinite(m.ns_per_pixel.value);
 }
+bool has_figures(const Measured& m) { return is_judged(m, Judge::model); }
 
 std::vector<const Measured*> values_of(const Sweep& sweep, const std::string& knob) {
   std::vector<const Measured*> result;
@@ -20,52 +22,51 @@ std::vector<const Measured*> values_of(const Sweep& sweep, const std::string& kn
   return result;
 }
 
-std::vector<const Measured*> front_of(const Sweep& sweep) {
-  std::vector<const Measured*> front;
-  for (const Measured& m : sweep.measured)
-    if (m.pareto && has_figures(m) && (!m.is_default || m.knob == "baseline")) front.push_back(&m);
-  std::stable_sort(front.begin(), front.end(),
-                   [](const Measured* a, const Measured* b) { return a->ns_per_pixel.value < b->ns_per_pixel.value; });
-  return front;
-}
-
-bool knows_other(const Sweep& sweep) {
-  return std::any_of(sweep.measured.begin(), sweep.measured.end(),
-                     [](const Measured& m) { return has_figures(m) && std::isfinite(m.flip_other); });
-}
-
-double physical_flip(const Sweep& sweep, const Measured& m) {
-  return sweep.reference == "model" ? m.flip_other : m.flip;
-}
-
 namespace {
 
-bool compares_methods(const Sweep& sweep, const Measured& m) {
-  return has_figures(m) && std::isfinite(physical_flip(sweep, m)) && m.is_choice && !m.indirect.empty();
-}
-
-}  // namespace
-
-std::vector<std::string> methods_of(const Sweep& sweep) {
-  std::vector<std::string> methods;
-  for (const Measured& m : sweep.measured)
-    if (compares_methods(sweep, m) && std::find(methods.begin(), methods.end(), m.indirect) == methods.end())
-      methods.push_back(m.indirect);
-  return methods;
-}
-
-std::vector<const Measured*> method_front(const Sweep& sweep, const std::string& method) {
-  std::vector<const Measured*> all, front;
-  std::vector<double> cost, error;
-  for (const Measured& m : sweep.measured)
-    if (compares_methods(sweep, m) && m.indirect == method)
-      all.push_back(&m), cost.push_back(m.ns_per_pixel.value), error.push_back(physical_flip(sweep, m));
-  const std::vector<bool> is_on_front = pareto_front(cost, error);
+// Of the configurations, those on their front, fastest first.
+std::vector<const Measured*> front_among(const std::vector<const Measured*>& all, Judge judge) {
+  std::vector<const Measured*> front;
+  std::vector<double> cost;
+  std::vector<const Distance*> distance;
+  for (const Measured* m : all) cost.push_back(m->ns_per_pixel.value), distance.push_back(&distance_to(*m, judge));
+  const std::vector<bool> is_on_front = claimed_front(cost, distance);
   for (std::size_t i = 0; i < all.size(); ++i)
     if (is_on_front[i]) front.push_back(all[i]);
   std::stable_sort(front.begin(), front.end(),
                    [](const Measured* a, const Measured* b) { return a->ns_per_pixel.value < b->ns_per_pixel.value; });
   return front;
+}
+
+bool compares_methods(const Measured& m) { return is_judged(m, Judge::truth) && m.is_choice && !m.indirect.empty(); }
+
+}  // namespace
+
+std::vector<const Measured*> front_of(const Sweep& sweep, Judge judge) {
+  std::vector<const Measured*> choices;
+  for (const Measured& m : sweep.measured)
+    if (is_judged(m, judge) && m.is_choice && (!m.is_default || m.knob == "baseline")) choices.push_back(&m);
+  return front_among(choices, judge);
+}
+
+bool has_judged(const Sweep& sweep, Judge judge) {
+  return std::any_of(sweep.measured.begin(), sweep.measured.end(),
+                     [&](const Measured& m) { return is_judged(m, judge); });
+}
+
+std::vector<std::string> methods_of(const Sweep& sweep) {
+  std::vector<std::string> methods;
+  for (const Measured& m : sweep.measured)
+    if (compares_methods(m) && std::find(methods.begin(), methods.end(), m.indirect) == methods.end())
+      methods.push_back(m.indirect);
+  return methods;
+}
+
+std::vector<const Measured*> method_front(const Sweep& sweep, const std::string& method) {
+  std::vector<const Measured*> all;
+  for (const Measured& m : sweep.measured)
+    if (compares_methods(m) && m.indirect == method) all.push_back(&m);
+  return front_among(all, Judge::truth);
 }
 
 std::string own_settings(const Measured& m) {
@@ -92,8 +93,16 @@ KnobEnds ends_of(const Sweep& sweep, const std::string& knob) {
   return ends;
 }
 
-bool gain_claimed(const Sweep& sweep, const KnobEnds& ends) {
-  return ends.worst && ends.worst->flip - ends.best->flip > kClaimFactor * sweep.reference_flip;
+double flip_by(const KnobFigures& knob, const Measured& m) { return distance_to(m, knob.judge).flip; }
+
+double gain_of(const KnobFigures& knob, const KnobEnds& ends) {
+  return ends.worst ? flip_by(knob, *ends.worst) - flip_by(knob, *ends.best) : kNotMeasured;
+}
+
+bool gain_claimed(const KnobFigures& knob, const KnobEnds& ends) {
+  if (!ends.worst) return false;
+  const Difference gain = difference(distance_to(*ends.worst, knob.judge), distance_to(*ends.best, knob.judge));
+  return gain.value > 0 && is_claimed(gain);
 }
 
 bool is_paid_in_bytes(const KnobEnds& ends) {
@@ -116,7 +125,7 @@ std::vector<const KnobFigures*> knobs_by_price(const Sweep& sweep) {
   for (const KnobFigures& knob : sweep.knobs) knobs.push_back(&knob);
   auto rank = [&](const KnobFigures* knob) {
     if (!std::isfinite(knob->ms_per_flip)) return 2;
-    return gain_claimed(sweep, ends_of(sweep, knob->name)) ? 0 : 1;
+    return gain_claimed(*knob, ends_of(sweep, knob->name)) ? 0 : 1;
   };
   std::stable_sort(knobs.begin(), knobs.end(), [&](const KnobFigures* a, const KnobFigures* b) {
     int rank_a = rank(a), rank_b = rank(b);

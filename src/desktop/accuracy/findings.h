@@ -8,23 +8,25 @@
 namespace pocketray {
 
 double ms_of(const Sweep& sweep, double ns_per_pixel);
-bool has_figures(const Measured& m);  // time and ꟻLIP
+bool has_figures(const Measured& m);             // time and ꟻLIP against the model
+bool is_judged(const Measured& m, Judge judge);  // time and ꟻLIP against that reference
 
-// Returns the front's configurations, fastest first. Lists the baseline once, not under each knob's name.
-std::vector<const Measured*> front_of(const Sweep& sweep);
+// Returns the configurations that can be chosen between frames and that no other beats both in time and, as far as the
+// judge's noise allows to claim, in ꟻLIP, fastest first. Lists the baseline once, not under each knob's name.
+std::vector<const Measured*> front_of(const Sweep& sweep, Judge judge);
 
-// Returns whether ꟻLIP is known against both kinds of reference.
-bool knows_other(const Sweep& sweep);
-// ꟻLIP against full light transport, whichever reference the sweep used.
-double physical_flip(const Sweep& sweep, const Measured& m);
+// Returns whether any configuration was judged by that reference.
+bool has_judged(const Sweep& sweep, Judge judge);
 // Returns the methods of indirect light that were measured, in the order of the sweep.
 std::vector<std::string> methods_of(const Sweep& sweep);
-// Returns the configurations of a method that can be chosen between frames and that no other of the method beats both
-// in time and in ꟻLIP against full light transport, fastest first.
+// Likewise for the configurations of a method, against the truth.
 std::vector<const Measured*> method_front(const Sweep& sweep, const std::string& method);
 
 // Settings that distinguish a configuration from others of its method: "samples 4, virtual-lights 256".
 std::string own_settings(const Measured& m);
+
+// ꟻLIP against the knob's judge.
+double flip_by(const KnobFigures& knob, const Measured& m);
 
 // Returns a knob's configurations with or without figures, in the order of its values.
 std::vector<const Measured*> values_of(const Sweep& sweep, const std::string& knob);
@@ -36,8 +38,9 @@ struct KnobEnds {
 };
 KnobEnds ends_of(const Sweep& sweep, const std::string& knob);
 
-// True if the best end improves by more than the reference's own error allows to claim.
-bool gain_claimed(const Sweep& sweep, const KnobEnds& ends);
+// How much nearer to the knob's judge the best end is, in ꟻLIP, and whether that is claimed.
+double gain_of(const KnobFigures& knob, const KnobEnds& ends);
+bool gain_claimed(const KnobFigures& knob, const KnobEnds& ends);
 
 // True if the ends differ in the bytes of rows sent by a render server but not in time.
 bool is_paid_in_bytes(const KnobEnds& ends);

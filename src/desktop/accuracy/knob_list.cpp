@@ -105,6 +105,10 @@ const std::vector<Knob>& knob_list() {
   return knobs;
 }
 
+Judge judge_of(const Knob& knob) {
+  return knob.needs != 0 && (knob.needs & ~kIndirectEffects) == 0 ? Judge::truth : Judge::model;
+}
+
 std::string value_label(const Knob& knob, double value) {
   for (std::size_t i = 0; i < knob.labels.size(); ++i)
     if (knob.values[i] == value) return knob.labels[i];

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "desktop/accuracy/result.h"
 #include "effect/effect_plan.h"
 #include "effect/settings.h"
 #include "present/pack.h"
@@ -12,7 +13,6 @@
 
 namespace pocketray {
 
-// Output to a screen: a pixel format, dithered or not.
 struct OutputFormat {
   const char* name;
   PixelFormat format;
@@ -20,7 +20,7 @@ struct OutputFormat {
 };
 constexpr OutputFormat kOutputFormats[] = {
     {"rgb565", kRgb565, false}, {"rgb565-dithered", kRgb565, true}, {"rgb888", kRgb888, false}};
-constexpr int kOutputFormatCount = 3;
+static_assert(sizeof kOutputFormats / sizeof kOutputFormats[0] == kOutputFormatCount, "a figure for each");
 // Index of the format with that name, or -1.
 int find_output_format(const std::string& name);
 
@@ -50,6 +50,8 @@ struct Knob {
 
 const std::vector<Knob>& knob_list();
 
+// The judge of its values: see KnobFigures.
+Judge judge_of(const Knob& knob);
 // "4", or the value's label.
 std::string value_label(const Knob& knob, double value);
 // The knob's values in order, including the baseline's.

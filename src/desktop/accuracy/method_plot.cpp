@@ -17,8 +17,8 @@ Plot method_plot(const Sweep& sweep) {
   std::vector<double> times, errors;
   for (const std::string& method : methods)
     for (const Measured* m : method_front(sweep, method))
-      times.push_back(ms_of(sweep, m->ns_per_pixel.value)), errors.push_back(physical_flip(sweep, *m));
-  const double own = sweep.reference == "model" ? sweep.other_flip : sweep.reference_flip;
+      times.push_back(ms_of(sweep, m->ns_per_pixel.value)), errors.push_back(m->truth.flip);
+  const double own = sweep.truth.flip;
   const Axis x = axis_of(times, 0, false), y = axis_of(errors, own, true);
   const int height = 560;
   const PlotFrame frame = {0.16, 0.97, 118.0 / height, 1 - 52.0 / height, height};
@@ -29,7 +29,7 @@ Plot method_plot(const Sweep& sweep) {
     std::string lines;
     double labelled = -1;
     for (const Measured* m : method_front(sweep, methods[i])) {
-      const double ms = ms_of(sweep, m->ns_per_pixel.value), flip = physical_flip(sweep, *m);
+      const double ms = ms_of(sweep, m->ns_per_pixel.value), flip = m->truth.flip;
       lines += format("%.8g %.8g\n", drawn_value(x, ms), drawn_value(y, flip));
       points.push_back({place_on(x, ms), place_on(y, flip)});
       const std::string label = own_settings(*m);

@@ -2,12 +2,13 @@
 
 #include <cmath>
 
+#include "desktop/accuracy/claim.h"
 #include "desktop/accuracy/findings.h"
+#include "desktop/accuracy/knob_list.h"
 #include "desktop/accuracy/page_parts.h"
 #include "desktop/accuracy/page_tables.h"
 #include "desktop/accuracy/plot.h"
 #include "desktop/accuracy/strip.h"
-#include "desktop/accuracy/sum_up.h"
 #include "desktop/accuracy/text.h"
 
 namespace pocketray {
@@ -43,6 +44,13 @@ std::string strip_figure(const Sweep& sweep, const PagePictures& pictures, const
          " × difference, FLIP from 0 " + flip_scale() + " to 1. From the top: " + rows + ".</figcaption></figure>\n";
 }
 
+// " (256 samples per pixel, own error FLIP 0.012)".
+std::string samples_text(const ReferenceFigures& reference) {
+  return reference.samples == 0
+             ? ""
+             : format(" (%u samples per pixel, own error FLIP ", reference.samples) + figure(reference.flip, 2) + ")";
+}
+
 std::string head_of(const Sweep& sweep, const PagePictures& pictures) {
   std::string title = "What accuracy costs in time: " + escaped(sweep.scene.substr(sweep.scene.rfind('/') + 1));
   std::string text = page_begin(title) + "<header>\n<div>\n<h1>" + title + "</h1>\n<p class=\"soft\">" +
@@ -50,20 +58,16 @@ std::string head_of(const Sweep& sweep, const PagePictures& pictures) {
                      format("%u × %u pixels", sweep.width, sweep.height) + ", " + escaped(sweep.machine) + ", " +
                      std::to_string(sweep.rounds) + " rounds; the baseline’s output is " + escaped(sweep.output) +
                      ".</p>\n";
-  text += "<p>Errors are relative to <b>" + escaped(sweep.reference) + "</b>, ";
-  text += sweep.reference == "physical" ? "full light transport, path traced in double precision"
-                                        : "the converged lighting model, in double precision";
-  text += format(" with %u samples per pixel. ", sweep.reference_samples) + "The reference’s own error is FLIP " +
-          figure(sweep.reference_flip, 2) + " and RMSE " + figure(sweep.reference_rmse, 2) + "; differences below " +
-          figure(kClaimFactor, 2) + " times that, <b>FLIP " + figure(kClaimFactor * sweep.reference_flip, 2) +
-          " and RMSE " + figure(kClaimFactor * sweep.reference_rmse, 2) +
-          "</b>, are not claimed: such figures are <span class=\"weak\"><i>grey</i></span>.";
-  if (std::isfinite(sweep.model_flip))
-    text += " The converged model itself is FLIP " + figure(sweep.model_flip) +
+  text += "<p>What a user sees is judged by <b>" + std::string(text_of(Judge::truth)) +
+          "</b>, path traced in double precision" + samples_text(sweep.truth) +
+          "; numerical settings by <b>the converged lighting model</b>" + samples_text(sweep.model) +
+          ", which has no other error. Means leave out what the noise of these references adds. Pictures share that "
+          "noise, so their differences are finer than it; where even a difference is not claimed, figures are <span "
+          "class=\"weak\"><i>grey</i></span>.";
+  if (std::isfinite(sweep.model_distance))
+    text += " The converged model itself is FLIP " + figure(sweep.model_distance) +
             (std::isfinite(sweep.model_rmse) ? " and RMSE " + figure(sweep.model_rmse) : "") +
-            " from full light transport" +
-            (sweep.model_flip < kClaimFactor * sweep.model_flip_error ? " at most: that reference is too noisy to tell."
-                                                                      : ".");
+            " from full light transport.";
   text += "</p>\n</div>\n";
   if (!pictures.reference_png.empty()) text += image(pictures.reference_png, "The reference") + "\n";
   return text + "</header>\n";
@@ -76,12 +80,12 @@ std::string answer_of(const Sweep& sweep) {
   auto add = [](std::string* list, const std::string& name) { *list += (list->empty() ? "" : ", ") + escaped(name); };
   for (const KnobFigures* knob : knobs_by_price(sweep)) {
     KnobEnds ends = ends_of(sweep, knob->name);
-    bool claimed = gain_claimed(sweep, ends);
+    bool claimed = gain_claimed(*knob, ends);
     if (is_paid_in_bytes(ends)) {
       sent +=
           "<b>" + escaped(knob->name) + "</b> saves bytes from render servers, not time: " +
           format("%.0f of %.0f", ends.best->bytes_per_frame - ends.worst->bytes_per_frame, ends.best->bytes_per_frame) +
-          " per frame for FLIP " + figure(ends.worst->flip - ends.best->flip, 2) + ". ";
+          " per frame for FLIP " + figure(gain_of(*knob, ends), 2) + ". ";
     } else if (!claimed || !std::isfinite(knob->ms_per_flip)) {
       add(&idle, knob->name);
     } else if (knob->ms_per_flip <= 0) {
@@ -115,16 +119,25 @@ std::string knob_section(const Sweep& sweep, const PagePictures& pictures, const
          value_table(sweep, knob.name);
 }
 
-// The front against the other kind of reference.
+// The front by the reference that is not the judge.
 std::string other_section(const Sweep& sweep, const PagePictures& pictures) {
-  if (!knows_other(sweep)) return "";
-  const Sweep other = against_other(sweep);
-  const bool is_model = other.reference == "model";
-  return "<h2>The front against " + escaped(other.reference) + "</h2>\n<p>The same pictures, compared with " +
-         (is_model ? "the converged lighting model" : "full light transport") +
-         format(" of %u samples per pixel, whose own error is FLIP ", other.reference_samples) +
-         figure(other.reference_flip, 2) + ".</p>\n" +
-         pair(plot_figure(pictures, other_front(sweep)), front_table(other));
+  const Judge other = sweep.judge == Judge::truth ? Judge::model : Judge::truth;
+  if (!has_judged(sweep, other)) return "";
+  return std::string("<h2>The front by ") + text_of(other) + "</h2>\n<p>The same pictures, judged by " +
+         text_of(other) + ": " +
+         (other == Judge::model ? "the numerical error of the model alone" : "the distance to the truth") + ".</p>\n" +
+         pair(plot_figure(pictures, std::string("front_") + name_of(other)), front_table(sweep, other));
+}
+
+// What the screen's format costs: the baseline's picture as each shows it.
+std::string format_section(const Sweep& sweep) {
+  if (sweep.measured.empty() || !std::isfinite(sweep.measured.front().flip_as[0])) return "";
+  std::string text;
+  for (int i = 0; i < kOutputFormatCount; ++i)
+    text += std::string(i ? ", " : "") + kOutputFormats[i].name + " " +
+            figure(sweep.measured.front().flip_as[static_cast<std::size_t>(i)]);
+  return "<p>What the format of the screen costs: the baseline’s picture is FLIP " + text +
+         " from the truth. Pictures that are written have 24 bits (rgb888), and a budget judges them so.</p>\n";
 }
 
 std::string methods_section(const Sweep& sweep, const PagePictures& pictures) {
@@ -184,12 +197,11 @@ std::string method_of(const Sweep& sweep) {
 std::string page_of(const Sweep& sweep, const PagePictures& pictures) {
   std::string text = head_of(sweep, pictures) + "<h2>What buys the most accuracy per millisecond</h2>\n" +
                      answer_of(sweep) + pair(price_table(sweep), plot_figure(pictures, "price"));
-  text +=
-      "<h2>The front: the least error for the time</h2>\n<p>No measured configuration is both faster and more "
-      "accurate, as far as the reference can tell: in order of time, a setting joins the front if it is better by "
-      "FLIP " +
-      figure(kClaimFactor * sweep.reference_flip, 2) + ".</p>\n" +
-      pair(plot_figure(pictures, "front"), front_table(sweep));
+  text += "<h2>The front: the least error for the time</h2>\n<p>Judged by " + std::string(text_of(sweep.judge)) +
+          ". No measured configuration is both faster and more accurate, as far as the reference can tell: in order of "
+          "time, a setting joins the front if it is nearer than the one before by twice the standard error of their "
+          "difference. <code>--budget-ms</code> and <code>--flip-max</code> choose from it.</p>\n" +
+          pair(plot_figure(pictures, "front"), front_table(sweep, sweep.judge)) + format_section(sweep);
   text += other_section(sweep, pictures) + methods_section(sweep, pictures);
   std::string links;
   for (const KnobFigures& knob : sweep.knobs)

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "desktop/accuracy/claim.h"
 #include "desktop/accuracy/findings.h"
 #include "desktop/accuracy/text.h"
 
@@ -24,8 +25,9 @@ std::string boxed(const std::string& head, const std::string& rows) {
 std::string claimed_cell(const std::string& text, bool claimed) {
   return claimed ? cell(text) : cell("<i>" + text + "</i>", "weak");
 }
-std::string error_cell(double error, double reference_error) {
-  return claimed_cell(figure(error), !(error < kClaimFactor * reference_error));
+// Marks an RMSE that is mostly the reference's own.
+std::string rmse_cell(const Sweep& sweep, const Measured& m) {
+  return claimed_cell(figure(m.errors.rmse), !(m.errors.rmse < kClaimFactor * sweep.model.rmse));
 }
 std::string ms_text(const Sweep& sweep, const Interval& ns) {
   std::string text = figure(ms_of(sweep, ns.value));
@@ -46,11 +48,12 @@ std::string name_of(const Measured& m) {
 
 std::string bytes_text(double bytes) { return std::isfinite(bytes) ? format("%.0f", bytes) : "–"; }
 
-std::string end_text(const Sweep& sweep, const Measured* m, bool in_bytes) {
+std::string end_text(const Sweep& sweep, const KnobFigures& knob, const Measured* m, bool in_bytes) {
   if (!m) return cell("–");
   std::string price =
       in_bytes ? bytes_text(m->bytes_per_frame) + " bytes" : figure(ms_of(sweep, m->ns_per_pixel.value)) + " ms";
-  return cell("<b>" + escaped(m->value) + "</b><br /><small>" + price + ", FLIP " + figure(m->flip) + "</small>");
+  return cell("<b>" + escaped(m->value) + "</b><br /><small>" + price + ", FLIP " + figure(flip_by(knob, *m)) +
+              "</small>");
 }
 
 std::string price_text(double price) {
@@ -64,26 +67,27 @@ std::string price_table(const Sweep& sweep) {
   std::string rows;
   for (const KnobFigures* knob : knobs_by_price(sweep)) {
     KnobEnds ends = ends_of(sweep, knob->name);
-    bool claimed = gain_claimed(sweep, ends), in_bytes = is_paid_in_bytes(ends);
-    double gain = ends.worst ? ends.worst->flip - ends.best->flip : kNotMeasured;
+    bool claimed = gain_claimed(*knob, ends), in_bytes = is_paid_in_bytes(ends);
     rows += claimed ? "<tr>" : "<tr class=\"weak\">";
     rows += "<th><a href=\"#" + file_word(knob->name) + "\">" + escaped(knob->name) + "</a><br /><small>" +
             escaped(knob->effect) + "</small></th>" +
-            cell("<b>" + (in_bytes ? "bytes" : price_text(knob->ms_per_flip)) + "</b>", "key") + cell(figure(gain)) +
-            end_text(sweep, ends.worst, in_bytes) + end_text(sweep, ends.standard, in_bytes) +
-            end_text(sweep, ends.best, in_bytes) + "</tr>\n";
+            cell("<b>" + (in_bytes ? "bytes" : price_text(knob->ms_per_flip)) + "</b>", "key") +
+            cell(figure(gain_of(*knob, ends))) + cell(knob->judge == Judge::truth ? "truth" : "model") +
+            end_text(sweep, *knob, ends.worst, in_bytes) + end_text(sweep, *knob, ends.standard, in_bytes) +
+            end_text(sweep, *knob, ends.best, in_bytes) + "</tr>\n";
   }
-  return boxed(headings({"knob", "ms per .01 FLIP", "FLIP gained", "worst end", "baseline", "best end"}), rows);
+  return boxed(headings({"knob", "ms per .01 FLIP", "FLIP gained", "judged by", "worst end", "baseline", "best end"}),
+               rows);
 }
 
-std::string front_table(const Sweep& sweep) {
+std::string front_table(const Sweep& sweep, Judge judge) {
   std::string rows;
   int number = 0;
-  for (const Measured* m : front_of(sweep))
+  for (const Measured* m : front_of(sweep, judge))
     rows += "<tr>" + cell(std::to_string(++number), "key") + "<th class=\"name\"><span>" + name_of(*m) +
             "</span></th>" + cell(ms_text(sweep, m->ns_per_pixel)) + cell(ratio_text(m->time_ratio)) +
-            error_cell(m->flip, sweep.reference_flip) + error_cell(m->errors.rmse, sweep.reference_rmse) + "</tr>\n";
-  return boxed(headings({"", "setting", "ms per frame", "× baseline", "FLIP", "RMSE"}), rows);
+            cell(figure(distance_to(*m, judge).flip)) + "</tr>\n";
+  return boxed(headings({"", "setting", "ms per frame", "× baseline", "FLIP"}), rows);
 }
 
 std::string method_table(const Sweep& sweep) {
@@ -91,7 +95,7 @@ std::string method_table(const Sweep& sweep) {
   for (const std::string& method : methods_of(sweep))
     for (const Measured* m : method_front(sweep, method))
       rows += "<tr><th>" + escaped(method) + "</th>" + cell(escaped(own_settings(*m))) +
-              cell(ms_text(sweep, m->ns_per_pixel)) + cell(figure(physical_flip(sweep, *m))) + "</tr>\n";
+              cell(ms_text(sweep, m->ns_per_pixel)) + cell(figure(m->truth.flip)) + "</tr>\n";
   return boxed(headings({"method", "settings", "ms per frame", "FLIP"}), rows);
 }
 
@@ -99,8 +103,8 @@ std::string value_table(const Sweep& sweep, const std::string& knob) {
   std::vector<const Measured*> values = values_of(sweep, knob);
   bool counted = false, sent = is_paid_in_bytes(ends_of(sweep, knob));
   for (const Measured* m : values) counted = counted || std::isfinite(m->instructions_per_pixel);
-  std::vector<std::string> names = {"value",    "ms per frame", "× baseline", "FLIP", "before output", "RMSE",
-                                    "rel. MSE", "p99",          "max",        "bias", "PSNR, dB"};
+  std::vector<std::string> names = {"value", "ms per frame", "× baseline", "FLIP to truth", "to model", "before output",
+                                    "RMSE",  "rel. MSE",     "p99",        "max",           "bias",     "PSNR, dB"};
   if (counted) names.push_back("instructions per pixel");
   if (sent) names.push_back("bytes per frame");
   std::string rows;
@@ -114,10 +118,9 @@ std::string value_table(const Sweep& sweep, const std::string& knob) {
       continue;
     }
     const PictureErrors& e = m->errors;
-    rows += cell(ms_text(sweep, m->ns_per_pixel)) + cell(ratio_text(m->time_ratio)) +
-            error_cell(m->flip, sweep.reference_flip) + error_cell(m->flip_before, sweep.reference_flip) +
-            error_cell(e.rmse, sweep.reference_rmse);
-    bool claimed = !(e.rmse < kClaimFactor * sweep.reference_rmse);  // otherwise mostly the reference's own error
+    rows += cell(ms_text(sweep, m->ns_per_pixel)) + cell(ratio_text(m->time_ratio)) + cell(figure(m->truth.flip)) +
+            cell(figure(m->model.flip)) + cell(figure(m->flip_before)) + rmse_cell(sweep, *m);
+    bool claimed = !(e.rmse < kClaimFactor * sweep.model.rmse);  // otherwise mostly the reference's own error
     for (const std::string& text : {figure(e.rel_mse), figure(e.p99), figure(e.max), figure(e.bias),
                                     std::isfinite(e.psnr) ? format("%.1f", e.psnr) : figure(e.psnr)})
       rows += claimed_cell(text, claimed);

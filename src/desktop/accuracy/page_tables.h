@@ -8,8 +8,8 @@ namespace pocketray {
 
 // "ms per .01 FLIP" by knob, cheapest first.
 std::string price_table(const Sweep& sweep);
-// The Pareto front's settings, numbered as in its plot.
-std::string front_table(const Sweep& sweep);
+// The settings of the front by that judge, numbered as in its plot.
+std::string front_table(const Sweep& sweep, Judge judge);
 // The front of each method of indirect light, as in its plot.
 std::string method_table(const Sweep& sweep);
 // All figures of one knob's values; for "several", those of the combined settings.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "desktop/accuracy/claim.h"
 #include "desktop/accuracy/findings.h"
 #include "desktop/accuracy/gnuplot.h"
 #include "desktop/accuracy/plot_axis.h"
@@ -36,36 +37,36 @@ std::string title_commands(const std::vector<std::string>& lines) {
   return "set title " + (title.empty() ? "''" : title) + "\n";
 }
 
-std::string series_of(const std::vector<const Measured*>& points, const Sweep& sweep, const Axis& x, const Axis& y) {
+std::string series_of(const std::vector<const Measured*>& points, const Sweep& sweep, Judge judge, const Axis& x,
+                      const Axis& y) {
   std::string lines;
   for (const Measured* m : points)
-    lines += format("%.8g %.8g\n", drawn_value(x, ms_of(sweep, m->ns_per_pixel.value)), drawn_value(y, m->flip));
+    lines += format("%.8g %.8g\n", drawn_value(x, ms_of(sweep, m->ns_per_pixel.value)),
+                    drawn_value(y, distance_to(*m, judge).flip));
   return lines;
 }
 
-// Configurations of one knob that have figures.
-std::vector<const Measured*> shown_of(const Sweep& sweep, const std::string& name) {
+// Configurations of one knob that have figures by the judge.
+std::vector<const Measured*> shown_of(const Sweep& sweep, const std::string& name, Judge judge) {
   std::vector<const Measured*> shown;
   for (const Measured* m : values_of(sweep, name))
-    if (has_figures(*m)) shown.push_back(m);
+    if (is_judged(*m, judge)) shown.push_back(m);
   return shown;
 }
 
-std::string reference_text(const std::string& reference) {
-  return reference == "model" ? "the converged model" : "full light transport";
-}
-
 bool has_price(const Sweep& sweep, const KnobFigures& knob) {
-  return std::isfinite(knob.ms_per_flip) && knob.ms_per_flip > 0 && gain_claimed(sweep, ends_of(sweep, knob.name));
+  return std::isfinite(knob.ms_per_flip) && knob.ms_per_flip > 0 && gain_claimed(knob, ends_of(sweep, knob.name));
 }
 
 }  // namespace
 
-Plot front_plot(const Sweep& sweep, const std::string& plot_name) {
+Plot front_plot(const Sweep& sweep, Judge judge) {
+  const std::string plot_name = judge == sweep.judge ? "front" : std::string("front_") + name_of(judge);
   std::vector<double> times, errors;
   for (const Measured& m : sweep.measured)
-    if (has_figures(m)) times.push_back(ms_of(sweep, m.ns_per_pixel.value)), errors.push_back(m.flip);
-  double limit = kClaimFactor * sweep.reference_flip;
+    if (is_judged(m, judge))
+      times.push_back(ms_of(sweep, m.ns_per_pixel.value)), errors.push_back(distance_to(m, judge).flip);
+  const double limit = figures_of(sweep, judge).flip;
   Axis x = axis_of(times, 0, false), y = axis_of(errors, limit, true);
   std::vector<std::string> names = {"several"};
   for (const KnobFigures& knob : sweep.knobs) names.push_back(knob.name);
@@ -74,11 +75,11 @@ Plot front_plot(const Sweep& sweep, const std::string& plot_name) {
   int key_rows = (static_cast<int>(names.size()) + 2) / 2, height = 594 + 22 * key_rows;
   PlotFrame frame = {0.16, 0.97, (114.0 + 22 * key_rows) / height, 1 - 52.0 / height, height};
   std::string data, plots;
-  std::vector<const Measured*> front = front_of(sweep);
+  std::vector<const Measured*> front = front_of(sweep, judge);
   std::vector<PlotPoint> points;
   std::vector<std::string> labels;
   auto point_of = [&](const Measured& m) {
-    return PlotPoint{place_on(x, ms_of(sweep, m.ns_per_pixel.value)), place_on(y, m.flip)};
+    return PlotPoint{place_on(x, ms_of(sweep, m.ns_per_pixel.value)), place_on(y, distance_to(m, judge).flip)};
   };
   for (const Measured* m : front) {
     points.push_back(point_of(*m));
@@ -86,16 +87,16 @@ Plot front_plot(const Sweep& sweep, const std::string& plot_name) {
     labels.push_back(std::to_string(labels.size() + 1) + (name.empty() ? "" : " " + name));
   }
   for (const Measured& m : sweep.measured)
-    if (has_figures(m) && !m.pareto) points.push_back(point_of(m));
+    if (is_judged(m, judge) && std::find(front.begin(), front.end(), &m) == front.end()) points.push_back(point_of(m));
   if (!front.empty()) {
-    data += data_block("front", series_of(front, sweep, x, y));
+    data += data_block("front", series_of(front, sweep, judge, x, y));
     plots = "$front using 1:2 title 'Pareto front' with lines lw 2 lc rgb 'black'";
   }
   for (std::size_t i = 0; i < names.size(); ++i) {
-    std::vector<const Measured*> shown = shown_of(sweep, names[i]);
+    std::vector<const Measured*> shown = shown_of(sweep, names[i], judge);
     if (shown.empty()) continue;
     std::string block = "knob" + std::to_string(i);
-    data += data_block(block, series_of(shown, sweep, x, y));
+    data += data_block(block, series_of(shown, sweep, judge, x, y));
     std::string style =
         format("pt %d ps 0.9 lc rgb '%s'", kSymbols[(i + 4) % 5], kPlotColors[(i + 7) % kPlotColorCount]);
     if (names[i] == "several") style = "pt 7 ps 0.45 lc rgb '#999999'";
@@ -105,28 +106,27 @@ Plot front_plot(const Sweep& sweep, const std::string& plot_name) {
   }
   if (plots.empty()) plots = "1/0 title 'nothing was measured'";
   std::string body = frame_commands(frame) + axis_commands(x, 'x') + axis_commands(y, 'y') +
-                     "set title 'Error over time, against " + reference_text(sweep.reference) +
+                     "set title 'Error over time, against " + text_of(judge) +
                      "'\nset xlabel 'milliseconds per frame'\n" +
                      "set ylabel 'FLIP, lower is better' offset 1.2,0\nset key at screen 0.5, screen 0.01 center "
                      "bottom horizontal samplen 1 "
                      "maxcols 2\n" +
-                     unclaimed_commands(y, limit, "not claimed: under 10 x the reference's own error") +
+                     unclaimed_commands(y, limit, "the reference's own error") +
                      label_commands(frame, points, labels, "black") + "plot " + plots + "\n";
   return {plot_name, script_of(plot_name, frame.height, data, body)};
 }
 
-std::string other_front(const Sweep& sweep) { return sweep.reference == "model" ? "front_physical" : "front_model"; }
-
 Plot knob_plot(const Sweep& sweep, const KnobFigures& knob) {
-  std::vector<const Measured*> shown = shown_of(sweep, knob.name);
+  std::vector<const Measured*> shown = shown_of(sweep, knob.name, knob.judge);
+  const bool has_rmse = knob.judge == Judge::model;  // which the RMSE is against
   std::vector<double> costs, errors;
   bool in_bytes = is_paid_in_bytes(ends_of(sweep, knob.name));
   auto cost_of = [&](const Measured& m, double ns) { return in_bytes ? m.bytes_per_frame / 1000 : ms_of(sweep, ns); };
   for (const Measured* m : shown) {
-    costs.push_back(cost_of(*m, m->ns_per_pixel.value)), errors.push_back(m->flip);
-    if (std::isfinite(m->errors.rmse)) errors.push_back(m->errors.rmse);
+    costs.push_back(cost_of(*m, m->ns_per_pixel.value)), errors.push_back(flip_by(knob, *m));
+    if (has_rmse && std::isfinite(m->errors.rmse)) errors.push_back(m->errors.rmse);
   }
-  double limit = kClaimFactor * sweep.reference_flip;
+  const double limit = figures_of(sweep, knob.judge).flip;
   Axis x = axis_of(costs, 0, false), y = axis_of(errors, limit, true);
   std::vector<std::string> title = title_lines({knob.name + ": " + knob.what, slope_text(knob)});
   double above = 38 + 1.35 * kPlotFont * static_cast<double>(title.size()), height = 428 + above;
@@ -138,10 +138,10 @@ Plot knob_plot(const Sweep& sweep, const KnobFigures& knob) {
     double cost = cost_of(*m, m->ns_per_pixel.value), at = drawn_value(x, cost);
     double low = std::max(x.low, std::min(at, cost_of(*m, m->ns_per_pixel.low)));
     double high = std::max(at, cost_of(*m, m->ns_per_pixel.high));
-    flip += format("%.8g %.8g %.8g %.8g\n", at, drawn_value(y, m->flip), low, high);
-    points.push_back({place_on(x, cost), place_on(y, m->flip)});
+    flip += format("%.8g %.8g %.8g %.8g\n", at, drawn_value(y, flip_by(knob, *m)), low, high);
+    points.push_back({place_on(x, cost), place_on(y, flip_by(knob, *m))});
     labels.push_back(m->value + (m->is_default ? "*" : ""));
-    if (!std::isfinite(m->errors.rmse)) continue;
+    if (!has_rmse || !std::isfinite(m->errors.rmse)) continue;
     rmse += format("%.8g %.8g %.8g %.8g\n", at, drawn_value(y, m->errors.rmse), low, high);
     others.push_back({place_on(x, cost), place_on(y, m->errors.rmse)});
   }
@@ -159,10 +159,10 @@ Plot knob_plot(const Sweep& sweep, const KnobFigures& knob) {
   std::string body = frame_commands(frame) + axis_commands(x, 'x') + axis_commands(y, 'y') + title_commands(title) +
                      "set xlabel '" +
                      (in_bytes ? "kilobytes per frame from a render server" : "milliseconds per frame") +
-                     "' offset 0,0.3\nset ylabel 'error' offset 1.2,0\n" +
+                     "' offset 0,0.3\nset ylabel 'error against " + text_of(knob.judge) + "' offset 1.2,0\n" +
                      "set key at screen 0.5, screen 0.01 center bottom horizontal samplen 2\n" +
-                     unclaimed_commands(y, limit, "FLIP not claimed") + label_commands(frame, points, labels, "black") +
-                     "plot " + plots + "\n";
+                     unclaimed_commands(y, limit, "the reference's own FLIP") +
+                     label_commands(frame, points, labels, "black") + "plot " + plots + "\n";
   return {name, script_of(name, frame.height, data, body)};
 }
 
@@ -182,7 +182,7 @@ Plot price_plot(const Sweep& sweep) {
   for (std::size_t i = 0; i < knobs.size(); ++i) {
     double price = knobs[i]->ms_per_flip, end = 0;
     KnobEnds ends_there = ends_of(sweep, knobs[i]->name);
-    bool claimed = std::isfinite(price) && gain_claimed(sweep, ends_there);
+    bool claimed = std::isfinite(price) && gain_claimed(*knobs[i], ends_there);
     std::string text = is_paid_in_bytes(ends_there) ? "paid in bytes, not in time"
                        : claimed                    ? "free: better and no slower"
                                                     : "no gain that can be claimed";

@@ -5,11 +5,9 @@
 
 namespace pocketray {
 
-// ꟻLIP over time of all configurations, the Pareto front as a line with labels numbered from 1, and the area too small
-// to claim.
-Plot front_plot(const Sweep& sweep, const std::string& name = "front");
-// Name of the plot of the front against the other kind of reference: "front_physical".
-std::string other_front(const Sweep& sweep);
+// ꟻLIP over time of all configurations, the Pareto front as a line with labels numbered from 1, and the reference's own
+// error: "front" by the sweep's judge, otherwise "front_physical" or "front_model".
+Plot front_plot(const Sweep& sweep, Judge judge);
 // ꟻLIP against full light transport over time, the front of each method of indirect light as a line.
 Plot method_plot(const Sweep& sweep);
 // RMSE and ꟻLIP over time for a knob's values.

@@ -6,7 +6,6 @@
 #include "desktop/accuracy/page.h"
 #include "desktop/accuracy/plot.h"
 #include "desktop/accuracy/strip.h"
-#include "desktop/accuracy/sum_up.h"
 #include "desktop/accuracy/text.h"
 #include "present/png_file.h"
 
@@ -54,8 +53,9 @@ Status write_report(const std::string& folder, const Sweep& sweep, const WriteFi
   *drawn = false;
   PagePictures pictures;
   RETURN_IF_ERROR(write_strips(folder, sweep, write, &pictures));
-  std::vector<Plot> plots = {front_plot(sweep), price_plot(sweep)};
-  if (knows_other(sweep)) plots.push_back(front_plot(against_other(sweep), other_front(sweep)));
+  std::vector<Plot> plots = {front_plot(sweep, sweep.judge), price_plot(sweep)};
+  const Judge other = sweep.judge == Judge::truth ? Judge::model : Judge::truth;
+  if (has_judged(sweep, other)) plots.push_back(front_plot(sweep, other));
   if (methods_of(sweep).size() > 1) plots.push_back(method_plot(sweep));
   for (const KnobFigures& knob : sweep.knobs) plots.push_back(knob_plot(sweep, knob));
   RETURN_IF_ERROR(draw_plots(folder, plots, write, draw, &pictures.plots, drawn));

@@ -1,5 +1,6 @@
 // The result of a sweep: frame time and error of each configuration.
 #pragma once
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <string>
@@ -11,6 +12,25 @@
 namespace pocketray {
 
 constexpr double kNotMeasured = std::numeric_limits<double>::quiet_NaN();
+
+// A reference to judge pictures by: full light transport, or the renderer's own lighting model, converged. Numerical
+// settings (samples, points, cut-off, filters) are judged by the model, which contains no other error; what a user sees
+// is judged by the truth.
+enum class Judge { truth, model };
+constexpr const char* kJudgeNames[] = {"physical", "model"};
+constexpr const char* kJudgeTexts[] = {"full light transport", "the converged lighting model"};
+inline const char* name_of(Judge judge) { return kJudgeNames[static_cast<int>(judge)]; }
+inline const char* text_of(Judge judge) { return kJudgeTexts[static_cast<int>(judge)]; }
+
+// ꟻLIP between a picture and one reference.
+struct Distance {
+  double flip = kNotMeasured;  // mean, without what the reference's noise adds
+  // Mean of each block of the picture against the reference's independent halves; empty: not known.
+  std::vector<float> one, other;
+};
+
+// Output to a screen: a pixel format, dithered or not; knob_list.h names them.
+constexpr int kOutputFormatCount = 3;
 
 // One configuration: the baseline with one knob changed, or several.
 struct Measured {
@@ -24,23 +44,25 @@ struct Measured {
   Interval time_ratio;  // relative to the baseline of the same round
   double instructions_per_pixel = kNotMeasured;
   double bytes_per_frame = kNotMeasured;  // of its rows from a render server; only for the baseline and near-lossless
-  double flip = kNotMeasured;             // mean, as shown on screen: after quantisation and dither
-  double flip_before = kNotMeasured;      // mean before these
-  double flip_other = kNotMeasured;       // like `flip`, against the other kind of reference
-  PictureErrors errors;                   // exposed linear light, clamped to the display range [0, 1]
-  std::string indirect;                   // method of indirect light, "none" without one; empty: unknown
-  bool is_choice = true;                  // can be chosen between frames on the baseline's screen
-  bool pareto = false;                    // a choice, and no other is faster with at most its ꟻLIP
-  std::string missing;                    // why there are no figures; empty: there are
-  std::string note;                       // says what was timed, if not this renderer
+  Distance truth, model;                  // as shown on screen: after quantisation and dither
+  double flip_before = kNotMeasured;      // mean against the model, before these
+  // Against the truth, as each output format shows it.
+  std::array<double, kOutputFormatCount> flip_as = {kNotMeasured, kNotMeasured, kNotMeasured};
+  PictureErrors errors;   // against the model: exposed linear light, clamped to the display range [0, 1]
+  std::string indirect;   // method of indirect light, "none" without one; empty: unknown
+  bool is_choice = true;  // can be chosen between frames on the baseline's screen
+  bool pareto = false;    // a choice, and no other is as fast and claimed to be nearer to the judge
+  std::string missing;    // why there are no figures; empty: there are
+  std::string note;       // says what was timed, if not this renderer
 };
 
 // Summary of a knob. Its configurations are those in `Sweep::measured` with its name, in the order of its values.
 struct KnobFigures {
-  std::string name;    // "samples"
-  std::string what;    // "rays through each pixel"
-  std::string effect;  // the effect it belongs to, or "all", "display"
-  std::string theory;  // theoretical slope, with its number; empty: none
+  std::string name;            // "samples"
+  std::string what;            // "rays through each pixel"
+  std::string effect;          // the effect it belongs to, or "all", "display"
+  std::string theory;          // theoretical slope, with its number; empty: none
+  Judge judge = Judge::model;  // of its values: methods of indirect light by the truth, numerical settings by the model
   // Slope of the knob's own RMSE over time, log-log, from fit_power_law() in each round; error that time does not
   // reduce comes from the other knobs. The interval covers only the times; slope_misfit is how far errors deviate from
   // the law.
@@ -70,27 +92,29 @@ struct Strip {
   std::vector<StripRow> rows;  // a few values, least accurate first
 };
 
+// A reference's samples per pixel, both seeds together, and its own error.
+struct ReferenceFigures {
+  std::uint32_t samples = 0;
+  double rmse = 0, flip = 0;
+};
+
 struct Sweep {
   std::string scene, machine;  // "cornell"; "2 threads, avx512"
   std::uint32_t width = 0, height = 0;
   std::uint32_t rounds = 0;  // number of times that each configuration was timed
   double pixels_per_degree = 0;
-  std::string reference;                          // "model": the converged lighting model; "physical": full transport
-  std::uint32_t reference_samples = 0;            // per pixel, both seeds together
-  double reference_rmse = 0, reference_flip = 0;  // the reference's own error
-  std::uint32_t other_samples = 0;                // of the other kind of reference, and its own error
-  double other_flip = kNotMeasured;
-  double model_flip = kNotMeasured, model_rmse = kNotMeasured;  // converged model against full transport
-  double model_flip_error = 0;                                  // error of that comparison by both references
-  std::string output;                                           // the baseline's: "rgb565 dithered"
-  Levels reference_picture;
-  std::vector<Measured> measured;  // the baseline first
+  Judge judge = Judge::truth;  // of the front
+  ReferenceFigures truth, model;
+  double model_distance = kNotMeasured, model_rmse = kNotMeasured;  // converged model against full transport
+  std::string output;                                               // the baseline's: "rgb565 dithered"
+  Levels reference_picture, truth_picture;                          // the model, and full transport
+  std::vector<Measured> measured;                                   // the baseline first
   std::vector<KnobFigures> knobs;
   std::vector<Strip> strips;
   std::vector<std::string> notes;  // one line each: skipped knobs and why, …
 };
 
-// Differences below this many times the reference's own error are not claimed.
+// An RMSE below this many times the reference's own is not claimed.
 constexpr double kClaimFactor = 10;
 
 // Pictures whose rows a render server sends: the camera orbits its target by kSentOrbitDegrees per frame, and the last

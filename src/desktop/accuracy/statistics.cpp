@@ -104,20 +104,4 @@ PowerLaw fit_power_law(const std::vector<double>& time, const std::vector<double
   return {exponent, std::sqrt(law.misfit(exponent) / static_cast<double>(time.size())) / 2};
 }
 
-std::vector<bool> pareto_front(const std::vector<double>& cost, const std::vector<double>& error, double resolution) {
-  CHECK_EQ(cost.size(), error.size());
-  std::vector<std::size_t> order(cost.size());
-  for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    return cost[a] < cost[b] || (cost[a] == cost[b] && error[a] < error[b]);
-  });
-  std::vector<bool> front(cost.size());
-  double least = kInfinity;
-  for (std::size_t i : order) {
-    front[i] = error[i] < least - resolution;
-    if (front[i]) least = error[i];
-  }
-  return front;
-}
-
 }  // namespace pocketray

@@ -29,10 +29,4 @@ struct PowerLaw {
 };
 PowerLaw fit_power_law(const std::vector<double>& time, const std::vector<double>& error, double resolution);
 
-// Marks points that no other beats in both numbers: cheaper than all with equal or lower error, and with a lower error
-// than all of equal or lower cost. Of equal points, the first. Errors closer than `resolution` count as equal: in order
-// of cost, a point joins only if its error is lower than all before by more than that.
-std::vector<bool> pareto_front(const std::vector<double>& cost, const std::vector<double>& error,
-                               double resolution = 0);
-
 }  // namespace pocketray

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/check.h"
+#include "desktop/accuracy/claim.h"
 #include "desktop/accuracy/findings.h"
 
 namespace pocketray {
@@ -35,24 +36,8 @@ Measured measured_of(const SweepPoint& point, const PointFigures& f, const Point
   m.ns_per_pixel.low = std::min(m.ns_per_pixel.low, m.ns_per_pixel.value);
   m.ns_per_pixel.high = std::max(m.ns_per_pixel.high, m.ns_per_pixel.value);
   m.instructions_per_pixel = f.instructions_per_pixel, m.bytes_per_frame = f.bytes_per_frame;
-  m.flip = f.flip, m.flip_before = f.flip_before, m.flip_other = f.flip_other, m.errors = f.errors;
+  m.truth = f.truth, m.model = f.model, m.flip_before = f.flip_before, m.flip_as = f.flip_as, m.errors = f.errors;
   return m;
-}
-
-// Marks the front among the configurations that a user can choose.
-void mark_front(double resolution, std::vector<Measured>* measured) {
-  std::vector<std::size_t> there;
-  std::vector<double> cost, error;
-  for (std::size_t i = 0; i < measured->size(); ++i) {
-    Measured* m = &(*measured)[i];
-    m->pareto = false;
-    if (!has_figures(*m) || (m->is_default && i > 0) || !m->is_choice) continue;
-    there.push_back(i), cost.push_back(m->ns_per_pixel.value), error.push_back(m->flip);
-  }
-  std::vector<bool> front = pareto_front(cost, error, resolution);
-  for (std::size_t i = 0; i < there.size(); ++i) (*measured)[there[i]].pareto = front[i];
-  for (Measured& m : *measured)
-    if (m.is_default) m.pareto = measured->front().pareto;
 }
 
 // Finds the slope in each round and how far the medians are from the law. `points`: indices in the plan, the best last.
@@ -61,9 +46,9 @@ void find_slope(const std::vector<PointFigures>& figures, const std::vector<std:
   std::vector<double> errors, medians, slopes;
   for (std::size_t i : points) {
     errors.push_back(sweep.measured[i].errors.rmse), medians.push_back(sweep.measured[i].time_ratio.value);
-    if (!(errors.back() * errors.back() + sweep.reference_rmse > 0)) return;  // no relative difference is defined
+    if (!(errors.back() * errors.back() + sweep.model.rmse > 0)) return;  // no relative difference is defined
   }
-  double resolution = kClaimFactor * sweep.reference_rmse;
+  double resolution = kClaimFactor * sweep.model.rmse;
   std::size_t rounds = figures[0].ns_per_pixel.size();
   CHECK_GE(points.size(), 4u);
   for (std::size_t i : points) rounds = std::min(rounds, figures[i].ns_per_pixel.size());
@@ -84,6 +69,7 @@ KnobFigures figures_of(const SweptKnob& swept, const SweepPlan& plan, const std:
   const Knob& knob = *swept.knob;
   KnobFigures k;
   k.name = knob.name, k.what = knob.what, k.effect = knob.effect, k.theory = knob.theory;
+  k.judge = judge_of(knob);
   const Measured *worst = nullptr, *best = nullptr;
   bool one_renderer = true;
   std::size_t best_index = 0;
@@ -99,16 +85,18 @@ KnobFigures figures_of(const SweptKnob& swept, const SweepPlan& plan, const std:
     const Measured& m = sweep.measured[i];
     if (!m.missing.empty() || m.time_ratio.value >= best->time_ratio.value) continue;
     double own = m.errors.rmse * m.errors.rmse - best->errors.rmse * best->errors.rmse;
-    if (own > std::pow(kClaimFactor * sweep.reference_rmse, 2)) faster.push_back(i);
+    if (own > std::pow(kClaimFactor * sweep.model.rmse, 2)) faster.push_back(i);
   }
-  if (knob.labels.empty() && faster.size() >= 3) {
+  if (k.judge == Judge::model && knob.labels.empty() && faster.size() >= 3) {
     faster.push_back(best_index);
     for (std::size_t& i : faster) i = plan.points[i].is_default ? 0 : i;
     find_slope(figures, faster, sweep, &k);
   }
-  if (worst && one_renderer && worst->flip - best->flip > kClaimFactor * sweep.reference_flip)
-    k.ms_per_flip = (best->ns_per_pixel.value - worst->ns_per_pixel.value) * 1e-6 * sweep.width * sweep.height * 0.01 /
-                    (worst->flip - best->flip);
+  if (!worst || !one_renderer) return k;
+  const Difference gain = difference(distance_to(*worst, k.judge), distance_to(*best, k.judge));
+  if (gain.value > 0 && is_claimed(gain))
+    k.ms_per_flip =
+        (best->ns_per_pixel.value - worst->ns_per_pixel.value) * 1e-6 * sweep.width * sweep.height * 0.01 / gain.value;
   return k;
 }
 
@@ -120,24 +108,11 @@ void sum_up(const SweepPlan& plan, const std::vector<PointFigures>& figures, Swe
   sweep->knobs.clear();
   for (std::size_t i = 0; i < plan.points.size(); ++i)
     sweep->measured.push_back(measured_of(plan.points[i], figures[plan.points[i].is_default ? 0 : i], figures[0]));
-  mark_front(kClaimFactor * sweep->reference_flip, &sweep->measured);
+  for (const Measured* m : front_of(*sweep, sweep->judge))
+    sweep->measured[static_cast<std::size_t>(m - sweep->measured.data())].pareto = true;
+  for (Measured& m : sweep->measured)
+    if (m.is_default) m.pareto = sweep->measured.front().pareto;
   for (const SweptKnob& swept : plan.knobs) sweep->knobs.push_back(figures_of(swept, plan, figures, *sweep));
-}
-
-Sweep against_other(const Sweep& sweep) {
-  Sweep other = sweep;
-  other.strips.clear(), other.reference_picture = Levels();
-  for (KnobFigures& knob : other.knobs) knob.has_slope = false, knob.ms_per_flip = kNotMeasured;
-  other.reference = sweep.reference == "model" ? "physical" : "model";
-  other.reference_samples = sweep.other_samples, other.other_samples = sweep.reference_samples;
-  other.reference_flip = sweep.other_flip, other.other_flip = sweep.reference_flip;
-  other.reference_rmse = kNotMeasured;
-  for (Measured& m : other.measured) {
-    std::swap(m.flip, m.flip_other);
-    m.flip_before = m.errors.rmse = kNotMeasured;
-  }
-  if (!other.measured.empty()) mark_front(kClaimFactor * other.reference_flip, &other.measured);
-  return other;
 }
 
 }  // namespace pocketray

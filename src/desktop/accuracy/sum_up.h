@@ -7,18 +7,17 @@ namespace pocketray {
 // Measurements of a point so far.
 struct PointFigures {
   bool has_errors = false;
-  double flip = 0, flip_before = 0, flip_other = kNotMeasured;
+  Distance truth, model;
+  double flip_before = 0;
+  std::array<double, kOutputFormatCount> flip_as = {kNotMeasured, kNotMeasured, kNotMeasured};
   PictureErrors errors;
   double instructions_per_pixel = kNotMeasured, bytes_per_frame = kNotMeasured;
   std::vector<double> ns_per_pixel;  // one per round
 };
 
-// Derives sweep->measured, with intervals and the front, and sweep->knobs, with slopes and prices, from the
-// measurements, one per point of the plan. Takes the picture's size and the reference's errors from *sweep.
+// Derives sweep->measured, with intervals and the judge's front, and sweep->knobs, with slopes and prices by the model,
+// from the measurements, one per point of the plan. Takes the picture's size, the judge and the references' errors from
+// *sweep.
 void sum_up(const SweepPlan& plan, const std::vector<PointFigures>& figures, Sweep* sweep);
-
-// Returns the sweep against the other kind of reference, without slopes, prices and strips: only ꟻLIP is known against
-// it.
-Sweep against_other(const Sweep& sweep);
 
 }  // namespace pocketray

@@ -2,12 +2,18 @@
 
 #include "desktop/sweep/report.h"
 
+#include "desktop/accuracy/claim.h"
 #include "desktop/accuracy/findings.h"
+#include "desktop/accuracy/knob_list.h"
 
 namespace pocketray {
 namespace {
 
 Json interval_json(const Interval& i) { return {{"value", i.value}, {"low", i.low}, {"high", i.high}}; }
+
+Json reference_json(const ReferenceFigures& reference) {
+  return {{"samples", reference.samples}, {"flip", reference.flip}, {"rmse", reference.rmse}};
+}
 
 Json measured_json(const Measured& m) {
   Json json = {{"knob", m.knob}, {"value", m.value}, {"default", m.is_default}};
@@ -19,9 +25,11 @@ Json measured_json(const Measured& m) {
   json["time_ratio"] = interval_json(m.time_ratio);
   json["instructions_per_pixel"] = m.instructions_per_pixel;  // NaN and infinity become null
   json["bytes_per_frame"] = m.bytes_per_frame;
-  json["flip"] = m.flip;
+  json["flip_truth"] = m.truth.flip;
+  json["flip_model"] = m.model.flip;
   json["flip_before"] = m.flip_before;
-  json["flip_other"] = m.flip_other;
+  for (int i = 0; i < kOutputFormatCount; ++i)
+    json["flip_as"][kOutputFormats[i].name] = m.flip_as[static_cast<std::size_t>(i)];
   if (!m.indirect.empty()) json["indirect"] = m.indirect;
   json["rmse"] = m.errors.rmse;
   json["rel_mse"] = m.errors.rel_mse;
@@ -34,20 +42,21 @@ Json measured_json(const Measured& m) {
   return json;
 }
 
-void print_value(const Sweep& sweep, const Measured& m, bool in_bytes) {
-  std::printf("    %-16s %9.2f ms  ×%-7.3g ꟻLIP %.4f  RMSE %.5f", m.value.c_str(), ms_of(sweep, m.ns_per_pixel.value),
-              m.time_ratio.value, m.flip, m.errors.rmse);
+void print_value(const Sweep& sweep, const KnobFigures& k, const Measured& m, bool in_bytes) {
+  std::printf("    %-16s %9.2f ms  ×%-7.3g ꟻLIP %.4f", m.value.c_str(), ms_of(sweep, m.ns_per_pixel.value),
+              m.time_ratio.value, flip_by(k, m));
+  if (k.judge == Judge::model) std::printf("  RMSE %.5f", m.errors.rmse);
   if (in_bytes) std::printf("  %.0f bytes per frame", m.bytes_per_frame);
   std::printf("%s%s\n", m.is_default ? "  baseline" : "", m.pareto ? "  *" : "");
 }
 
 // Prints the least accurate, the baseline's and the best value.
 void print_knob(const Sweep& sweep, const KnobFigures& k) {
-  std::printf("  %s: %s\n", k.name.c_str(), k.what.c_str());
+  std::printf("  %s: %s; error against %s\n", k.name.c_str(), k.what.c_str(), text_of(k.judge));
   KnobEnds ends = ends_of(sweep, k.name);
   for (const Measured* m : values_of(sweep, k.name))
     if (m == ends.worst || m == ends.standard || m == ends.best) {
-      print_value(sweep, *m, is_paid_in_bytes(ends));
+      print_value(sweep, k, *m, is_paid_in_bytes(ends));
       if (!m->note.empty()) std::printf("      (%s)\n", m->note.c_str());
     }
   if (k.ms_per_flip > 0) std::printf("    %.3g ms per .01 ꟻLIP\n", k.ms_per_flip);
@@ -59,10 +68,11 @@ void print_knob(const Sweep& sweep, const KnobFigures& k) {
 }
 
 void print_front(const Sweep& sweep) {
-  std::printf("Pareto front: no other configuration is faster at equal or lower ꟻLIP\n");
-  for (const Measured* m : front_of(sweep))
-    std::printf("  %9.2f ms  ꟻLIP %.4f  %s %s\n", ms_of(sweep, m->ns_per_pixel.value), m->flip, m->knob.c_str(),
-                m->value.c_str());
+  std::printf("the front: no other setting is as fast and nearer to %s, by ꟻLIP (0: equal; .05: seen at once)\n",
+              text_of(sweep.judge));
+  for (const Measured* m : front_of(sweep, sweep.judge))
+    std::printf("  %9.2f ms  ꟻLIP %.4f  %s %s\n", ms_of(sweep, m->ns_per_pixel.value),
+                distance_to(*m, sweep.judge).flip, m->knob.c_str(), m->value.c_str());
 }
 
 }  // namespace
@@ -85,31 +95,23 @@ Json sweep_json(const Sweep& sweep) {
           {"rounds", sweep.rounds},
           {"pixels_per_degree", sweep.pixels_per_degree},
           {"output", sweep.output},
-          {"reference", sweep.reference},
-          {"reference_samples", sweep.reference_samples},
-          {"reference_rmse", sweep.reference_rmse},
-          {"reference_flip", sweep.reference_flip},
-          {"other_samples", sweep.other_samples},
-          {"other_flip", sweep.other_flip},
-          {"model_flip", sweep.model_flip},
-          {"model_rmse", sweep.model_rmse},
+          {"judge", name_of(sweep.judge)},
+          {"truth", reference_json(sweep.truth)},
+          {"model", reference_json(sweep.model)},
+          {"model_distance", {{"flip", sweep.model_distance}, {"rmse", sweep.model_rmse}}},
           {"notes", sweep.notes},
           {"knobs", knobs},
           {"measured", measured}};
 }
 
 void print_sweep(const Sweep& sweep) {
-  std::printf("%s: %u×%u, %s, %u rounds, %s; reference: %s, %u samples per pixel\n", sweep.scene.c_str(), sweep.width,
-              sweep.height, sweep.machine.c_str(), sweep.rounds, sweep.output.c_str(), sweep.reference.c_str(),
-              sweep.reference_samples);
-  std::printf(
-      "  the reference's own error is RMSE %.2g and ꟻLIP %.2g: differences below %.2g and %.2g are not claimed\n",
-      sweep.reference_rmse, sweep.reference_flip, kClaimFactor * sweep.reference_rmse,
-      kClaimFactor * sweep.reference_flip);
-  std::printf(
-      "  the converged model differs from full light transport by RMSE %.3g, ꟻLIP %.3g%s\n", sweep.model_rmse,
-      sweep.model_flip,
-      sweep.model_flip < kClaimFactor * sweep.model_flip_error ? " at most: that reference is too noisy to tell" : "");
+  std::printf("%s: %u×%u, %s, %u rounds, %s\n", sweep.scene.c_str(), sweep.width, sweep.height, sweep.machine.c_str(),
+              sweep.rounds, sweep.output.c_str());
+  for (Judge judge : {Judge::truth, Judge::model})
+    std::printf("  reference: %s, %u samples per pixel, its own error ꟻLIP %.2g, RMSE %.2g\n", text_of(judge),
+                figures_of(sweep, judge).samples, figures_of(sweep, judge).flip, figures_of(sweep, judge).rmse);
+  std::printf("  the converged model differs from full light transport by ꟻLIP %.3g, RMSE %.3g\n", sweep.model_distance,
+              sweep.model_rmse);
   for (const KnobFigures& k : sweep.knobs) print_knob(sweep, k);
   print_front(sweep);
   for (const std::string& note : sweep.notes) std::printf("  %s\n", note.c_str());

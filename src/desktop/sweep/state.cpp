@@ -1,8 +1,10 @@
 #include "desktop/sweep/state.h"
 
+#include <algorithm>
 #include <limits>
 
 #include "base/check.h"
+#include "desktop/accuracy/claim.h"
 #include "platform/file.h"
 #include "session/output.h"
 
@@ -18,16 +20,27 @@ double number_of(const Json& json) {
   return json == "none" ? kNotMeasured : json.get<double>();
 }
 
+Json to_json(const Distance& d) { return {{"flip", number(d.flip)}, {"one", d.one}, {"other", d.other}}; }
+
 Json to_json(const PointFigures& f) {
   Json json = {{"ns_per_pixel", f.ns_per_pixel},
                {"instructions_per_pixel", number(f.instructions_per_pixel)},
                {"bytes_per_frame", number(f.bytes_per_frame)}};
   if (f.has_errors) {
     const PictureErrors& e = f.errors;
-    json["errors"] = {number(f.flip), number(f.flip_before), number(e.rmse), number(e.rel_mse),   number(e.p99),
-                      number(e.max),  number(e.bias),        number(e.psnr), number(f.flip_other)};
+    json["errors"] = {number(f.flip_before), number(e.rmse), number(e.rel_mse), number(e.p99),
+                      number(e.max),         number(e.bias), number(e.psnr)};
+    json["truth"] = to_json(f.truth), json["model"] = to_json(f.model);
+    for (double flip : f.flip_as) json["flip_as"].push_back(number(flip));
   }
   return json;
+}
+
+Distance distance_from(const Json& json) {
+  Distance d;
+  d.flip = number_of(json.at("flip"));
+  d.one = json.at("one").get<std::vector<float>>(), d.other = json.at("other").get<std::vector<float>>();
+  return d;
 }
 
 PointFigures figures_from(const Json& json) {
@@ -38,14 +51,22 @@ PointFigures figures_from(const Json& json) {
   f.has_errors = json.contains("errors");
   if (!f.has_errors) return f;
   const Json& e = json.at("errors");
-  f.flip = number_of(e.at(0)), f.flip_before = number_of(e.at(1));
-  f.errors = {number_of(e.at(2)), number_of(e.at(3)), number_of(e.at(4)),
-              number_of(e.at(5)), number_of(e.at(6)), number_of(e.at(7))};
-  if (e.size() > 8) f.flip_other = number_of(e.at(8));  // missing in older files
+  f.flip_before = number_of(e.at(0));
+  f.errors = {number_of(e.at(1)), number_of(e.at(2)), number_of(e.at(3)),
+              number_of(e.at(4)), number_of(e.at(5)), number_of(e.at(6))};
+  f.truth = distance_from(json.at("truth")), f.model = distance_from(json.at("model"));
+  for (std::size_t i = 0; i < f.flip_as.size(); ++i) f.flip_as[i] = number_of(json.at("flip_as").at(i));
   return f;
 }
 
 bool is_within(double value, double low, double high) { return value >= low && value <= high; }
+
+bool is_sane(const Distance& d) {
+  auto is_flip = [](float flip) { return flip >= 0 && flip <= 1; };
+  return is_within(d.flip, 0, 1) && !d.one.empty() && d.one.size() == d.other.size() &&
+         d.one.size() <= kBlocksPerSide * kBlocksPerSide && std::all_of(d.one.begin(), d.one.end(), is_flip) &&
+         std::all_of(d.other.begin(), d.other.end(), is_flip);
+}
 
 // True if a sweep could have written it; other values could not be plotted.
 bool is_sane(const PointFigures& f) {
@@ -56,10 +77,11 @@ bool is_sane(const PointFigures& f) {
     return false;
   if (!std::isnan(f.bytes_per_frame) && !is_within(f.bytes_per_frame, 0, kBytesPerFrameMax)) return false;
   const PictureErrors& e = f.errors;  // of light between 0 and 1
-  return !f.has_errors || (is_within(f.flip, 0, 1) && is_within(f.flip_before, 0, 1) &&
-                           (std::isnan(f.flip_other) || is_within(f.flip_other, 0, 1)) && is_within(e.rmse, 0, 1) &&
-                           is_within(e.rel_mse, 0, 1 / kRelativeFloor) && is_within(e.p99, 0, 1) &&
-                           is_within(e.max, 0, 1) && is_within(e.bias, -1, 1) && e.psnr >= 0);
+  for (double flip : f.flip_as)
+    if (f.has_errors && !is_within(flip, 0, 1)) return false;
+  return !f.has_errors || (is_sane(f.truth) && is_sane(f.model) && is_within(f.flip_before, 0, 1) &&
+                           is_within(e.rmse, 0, 1) && is_within(e.rel_mse, 0, 1 / kRelativeFloor) &&
+                           is_within(e.p99, 0, 1) && is_within(e.max, 0, 1) && is_within(e.bias, -1, 1) && e.psnr >= 0);
 }
 
 Status read_state(const std::string& text, const std::string& path, AccuracyState* state) {

@@ -9,6 +9,7 @@
 #include "base/check.h"
 #include "base/limit_list.h"
 #include "base/rng.h"
+#include "desktop/accuracy/claim.h"
 #include "desktop/accuracy/display.h"
 #include "desktop/accuracy/findings.h"
 #include "desktop/sweep/instructions.h"
@@ -34,11 +35,8 @@ struct SweepRun {
   Rigs rigs;
   SweepPlan plan;
   AccuracyState state;
-  ReferencePictures reference, other;  // the chosen one, and the other kind
+  ReferencePictures truth, model;
 };
-
-Transport chosen(const AccuracyOptions& o) { return o.reference == "model" ? Transport::model : Transport::physical; }
-Transport other_than(Transport t) { return t == Transport::model ? Transport::physical : Transport::model; }
 
 Json settings_json(const Quality& quality) {
   Json settings;
@@ -58,27 +56,27 @@ Json key_of(const SweepRun& run, const Rig& rig) {
   std::string ids;
   for (const SweepPoint& point : run.plan.points) ids += id_of(point) + "\n";
   Json key = settings_json(settings);
-  key.update({{"program", POCKETRAY_VERSION},
-              {"scene", c.scene},
-              {"content", rig.scene_hash},
-              {"size", std::to_string(settings.width) + "x" + std::to_string(settings.height)},
-              {"camera", c.camera},
-              {"camera-index", c.camera_index},
-              {"time", o.seconds},
-              {"exposure", c.exposure},
-              {"effects", c.effects},
-              {"look", {c.background, c.environment, c.light, c.fov, c.focus}},
-              {"output", o.output},
-              {"reference", o.reference},
-              {"reference-file", o.reference_file},
-              {"reference-samples", reference_samples(o, chosen(o))},
-              {"other-reference-samples", reference_samples(o, other_than(chosen(o)))},
-              {"ppd", o.pixels_per_degree},
-              {"threads", settings.threads},
-              {"isa", isa_name(active_isa())},
-              {"accel", rig.opened.renderer.accel.info->name},
-              {"emulate", c.emulate},
-              {"configurations", crc32_z(0, reinterpret_cast<const Bytef*>(ids.data()), ids.size())}});
+  key.update(
+      {{"program", POCKETRAY_VERSION},
+       {"scene", c.scene},
+       {"content", rig.scene_hash},
+       {"size", std::to_string(settings.width) + "x" + std::to_string(settings.height)},
+       {"camera", c.camera},
+       {"camera-index", c.camera_index},
+       {"time", o.seconds},
+       {"exposure", c.exposure},
+       {"effects", c.effects},
+       {"look", {c.background, c.environment, c.light, c.fov, c.focus}},
+       {"output", o.output},
+       {"reference", o.reference},
+       {"reference-file", o.reference_file},
+       {"reference-samples", {reference_samples(o, Transport::physical), reference_samples(o, Transport::model)}},
+       {"ppd", o.pixels_per_degree},
+       {"threads", settings.threads},
+       {"isa", isa_name(active_isa())},
+       {"accel", rig.opened.renderer.accel.info->name},
+       {"emulate", c.emulate},
+       {"configurations", crc32_z(0, reinterpret_cast<const Bytef*>(ids.data()), ids.size())}});
   return key;
 }
 
@@ -103,6 +101,19 @@ Status find_levels(const SweepRun& run, Rig* rig, const Configuration& configura
   return success();
 }
 
+// *noise receives what the reference's noise adds to the mean ꟻLIP.
+Distance distance_of(const ReferencePictures& reference, const std::vector<float>& shown, std::uint32_t width,
+                     std::uint32_t height, double ppd, double* noise) {
+  const std::vector<float> against_one = flip_errors(encoded_light(reference.one), shown, width, height, ppd);
+  const std::vector<float> against_other = flip_errors(encoded_light(reference.other), shown, width, height, ppd);
+  const double against_mean = mean_of(flip_errors(reference.encoded, shown, width, height, ppd));
+  Distance d;
+  d.flip = without_noise(against_mean, mean_of(against_one), mean_of(against_other));
+  d.one = block_means(against_one, width, height), d.other = block_means(against_other, width, height);
+  *noise = against_mean - d.flip;
+  return d;
+}
+
 // After an interrupt there are none.
 Status find_errors(const SweepRun& run, Rig* rig, const SweepPoint& point, PointFigures* f) {
   const Renderer& renderer = rig->opened.renderer;
@@ -112,15 +123,23 @@ Status find_errors(const SweepRun& run, Rig* rig, const SweepPoint& point, Point
   RETURN_IF_ERROR(find_levels(run, rig, point.configuration, &levels, counts_bytes ? &f->bytes_per_frame : nullptr));
   if (interrupted) return success();
   std::vector<double> light = exposed_light(renderer.image.data, renderer.image.count, renderer.view.exposure);
-  CHECK_EQ(light.size(), run.reference.mean.size());
-  const ReferencePictures& reference = run.reference;
-  double ppd = run.options.pixels_per_degree;
+  CHECK_EQ(light.size(), run.model.mean.size());
+  const double ppd = run.options.pixels_per_degree;
   const auto shown = encoded_levels(levels);
-  f->flip = mean_of(flip_errors(reference.encoded, shown, width, height, ppd));
-  f->flip_other = mean_of(flip_errors(run.other.encoded, shown, width, height, ppd));
-  f->flip_before = mean_of(flip_errors(reference.encoded, encoded_light(light), width, height, ppd));
-  f->errors = picture_errors(reference.mean, light);
-  f->errors.rmse = unbiased_rmse(reference.one, reference.other, light);
+  double noise = 0;
+  f->truth = distance_of(run.truth, shown, width, height, ppd, &noise);
+  for (int i = 0; i < kOutputFormatCount; ++i) {
+    double* flip = &f->flip_as[static_cast<std::size_t>(i)];
+    *flip = f->truth.flip;
+    if (i == point.configuration.output) continue;
+    const Levels as = displayed_levels(renderer.image.data, width, height, renderer.view.exposure, kOutputFormats[i]);
+    *flip = mean_of(flip_errors(run.truth.encoded, encoded_levels(as), width, height, ppd));
+    *flip = std::max(*flip - noise, 0.0);
+  }
+  f->model = distance_of(run.model, shown, width, height, ppd, &noise);
+  f->flip_before = mean_of(flip_errors(run.model.encoded, encoded_light(light), width, height, ppd));
+  f->errors = picture_errors(run.model.mean, light);
+  f->errors.rmse = unbiased_rmse(run.model.one, run.model.other, light);
   f->errors.psnr = f->errors.rmse > 0 ? -20 * std::log10(f->errors.rmse) : std::numeric_limits<double>::infinity();
   f->has_errors = true;
   return success();
@@ -223,9 +242,10 @@ Status add_strip(SweepRun* run, const SweptKnob& swept, Sweep* sweep, bool* whol
     if (!*whole) return success();
     row.label = point.knob + " " + point.value;
     row.ms = sweep->measured[i].ns_per_pixel.value * 1e-6 * sweep->width * sweep->height;
-    row.flip = sweep->measured[i].flip;
+    row.flip = distance_to(sweep->measured[i], judge_of(*swept.knob)).flip;
     if (is_paid_in_bytes(ends_of(*sweep, strip.knob))) row.bytes = sweep->measured[i].bytes_per_frame;
-    row.flip_map = flip_errors(run->reference.encoded, encoded_levels(row.picture), sweep->width, sweep->height,
+    const ReferencePictures& judge = judge_of(*swept.knob) == Judge::truth ? run->truth : run->model;
+    row.flip_map = flip_errors(judge.encoded, encoded_levels(row.picture), sweep->width, sweep->height,
                                run->options.pixels_per_degree);
     strip.rows.push_back(std::move(row));
   }
@@ -233,26 +253,25 @@ Status add_strip(SweepRun* run, const SweptKnob& swept, Sweep* sweep, bool* whol
   return success();
 }
 
-// Renders both references: the one that knobs are compared with, and the one that gives the converged model's error
-// against full transport.
+ReferenceFigures figures_of(const ReferencePictures& pictures) {
+  return {static_cast<std::uint32_t>(pictures.samples), pictures.rmse, pictures.flip};
+}
+
 Status render_references(SweepRun* run, Sweep* sweep, bool* whole) {
   Rig* rig;
   RETURN_IF_ERROR(reference_rig(&run->rigs, &rig));
-  Transport kind = chosen(run->options), other_kind = other_than(kind);
-  RETURN_IF_ERROR(render_reference(run->options, kind, rig, &run->state, &run->reference, whole));
+  const ReferencePictures &truth = run->truth, &model = run->model;
+  RETURN_IF_ERROR(render_reference(run->options, Transport::model, rig, &run->state, &run->model, whole));
   if (!*whole) return success();
-  RETURN_IF_ERROR(render_reference(run->options, other_kind, rig, &run->state, &run->other, whole));
+  RETURN_IF_ERROR(render_reference(run->options, Transport::physical, rig, &run->state, &run->truth, whole));
   if (!*whole) return success();
-  const ReferencePictures &reference = run->reference, &other = run->other;
-  sweep->other_samples = static_cast<std::uint32_t>(other.samples), sweep->other_flip = other.flip;
-  sweep->reference_samples = static_cast<std::uint32_t>(reference.samples);
-  sweep->reference_rmse = reference.rmse, sweep->reference_flip = reference.flip;
-  sweep->reference_picture = reference.levels;
-  sweep->model_flip = mean_of(
-      flip_errors(reference.encoded, other.encoded, sweep->width, sweep->height, run->options.pixels_per_degree));
-  sweep->model_flip_error = reference.flip + other.flip;
-  std::vector<double> of_one = reference.one, of_other = reference.other, none(of_one.size(), 0.0);
-  for (std::size_t i = 0; i < none.size(); ++i) of_one[i] -= other.one[i], of_other[i] -= other.other[i];
+  sweep->truth = figures_of(truth), sweep->model = figures_of(model);
+  sweep->reference_picture = model.levels, sweep->truth_picture = truth.levels;
+  double noise;
+  sweep->model_distance =
+      distance_of(truth, model.encoded, sweep->width, sweep->height, run->options.pixels_per_degree, &noise).flip;
+  std::vector<double> of_one = truth.one, of_other = truth.other, none(of_one.size(), 0.0);
+  for (std::size_t i = 0; i < none.size(); ++i) of_one[i] -= model.one[i], of_other[i] -= model.other[i];
   sweep->model_rmse = unbiased_rmse(of_one, of_other, none);
   run->rigs.by_columns.erase(kReferenceColumns);
   return success();
@@ -282,7 +301,7 @@ void describe(const SweepRun& run, const Rig& rig, Sweep* sweep) {
                    isa_name(active_isa()) + emulation_text(rig.opened.renderer.pace);
   sweep->width = settings.width, sweep->height = settings.height;
   sweep->pixels_per_degree = o.pixels_per_degree;
-  sweep->reference = o.reference;
+  sweep->judge = o.reference == "model" ? Judge::model : Judge::truth;
   sweep->output = o.output;
   sweep->notes = run.plan.notes;
 }

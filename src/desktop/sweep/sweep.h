@@ -15,9 +15,9 @@ namespace pocketray {
 
 struct AccuracyOptions {
   CommonOptions common;
-  std::string folder, output = kOutputFormats[Configuration().output].name, reference = "model";
-  std::string reference_file;           // of the chosen reference; empty: it is rendered
-  std::uint32_t reference_samples = 0;  // per pixel of the chosen reference, both halves together; 0: the default
+  std::string folder, output = kOutputFormats[Configuration().output].name, reference = "physical";
+  std::string reference_file;           // of the judge's reference; empty: it is rendered
+  std::uint32_t reference_samples = 0;  // per pixel of the judge's reference, both halves together; 0: the default
   std::uint32_t rounds = 15;
   double pixels_per_degree = kHandheldPixelsPerDegree, seconds = 0, price_limit = 16;
   bool restart = false;

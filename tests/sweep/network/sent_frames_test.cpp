@@ -103,8 +103,8 @@ TEST_CASE("sweep_judges_near_lossless_rows") {
     CHECK_FALSE(on->is_default);
     CHECK(on->errors.rmse == off->errors.rmse);  // nothing else is traced
     CHECK(on->flip_before == off->flip_before);
-    CHECK(on->flip > off->flip);
-    CHECK(on->flip < off->flip + 0.05);
+    CHECK(on->model.flip > off->model.flip);
+    CHECK(on->model.flip < off->model.flip + 0.05);
     CHECK(on->bytes_per_frame < 0.9 * off->bytes_per_frame);
     CHECK_FALSE(on->pareto);
     if (run == 1) CHECK(on->bytes_per_frame == bytes[0]);
