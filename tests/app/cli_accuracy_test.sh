@@ -17,6 +17,11 @@ if "${run[@]}" --help | grep -q '^ *accuracy '; then
   check accuracy_is_interrupted test $? -eq 3
   check accuracy_says_that_it_is_kept grep -q 'so far are in sweep.*same command' interrupted.err
   expect accuracy 0 'index.html for the results' accuracy cube "${tiny[@]}" -o sweep --rounds 1 --json sweep.json
+  if ! grep -q '"instructions_per_pixel": [1-9]' sweep.json; then
+    check accuracy_offers_to_count grep -q 'count-instructions lets valgrind' sweep.json
+  fi
+  counting=("${tiny[@]}" --count-instructions)
+  expect accuracy_that_counts 0 'index.html for the results' accuracy cube "${counting[@]}" -o sweep --rounds 1
   check accuracy_table grep -q '^samples,16,[0-9]' sweep/accuracy.csv
   check accuracy_json grep -q '"flip_truth": 0' sweep.json
   check accuracy_page grep -q '</html>' sweep/index.html
@@ -37,14 +42,14 @@ if "${run[@]}" --help | grep -q '^ *accuracy '; then
     printf '#!/bin/sh\nexit 1\n' >fake/valgrind
     chmod +x fake/valgrind
     real_path=$PATH PATH=$PWD/fake:$PATH
-    expect accuracy_failing_valgrind 0 'index.html for the results' accuracy cube "${tiny[@]}" -o other --rounds 1 --json other.json
+    expect accuracy_failing_valgrind 0 'index.html for the results' accuracy cube "${counting[@]}" -o other --rounds 1 --json other.json
     if ! counts other; then
       check accuracy_tells_that_valgrind_failed grep -q 'not counted: .* valgrind failed' other.json
       cp sweep/accuracy.state counted.state
-      expect accuracy_counts_once 0 'by valgrind over the picture, one thread, [a-z0-9]+' accuracy cube "${tiny[@]}" -o sweep --rounds 1
+      expect accuracy_counts_once 0 'by valgrind over the picture, one thread, [a-z0-9]+' accuracy cube "${counting[@]}" -o sweep --rounds 1
       check accuracy_keeps_counts cmp -s sweep/accuracy.state counted.state
       printf '#!/bin/sh\necho $$ >fake.id.part && mv fake.id.part fake.id\nexec sleep 60\n' >fake/valgrind
-      "${run[@]}" accuracy cube "${tiny[@]}" -o other --rounds 1 >/dev/null 2>&1 &
+      "${run[@]}" accuracy cube "${counting[@]}" -o other --rounds 1 >/dev/null 2>&1 &
       sweeping=$!
       wait_for $sweeping test -s fake.id
       kill -INT $sweeping
@@ -52,10 +57,10 @@ if "${run[@]}" --help | grep -q '^ *accuracy '; then
       check accuracy_is_interrupted_when_counting test $? -eq 3
       check accuracy_ends_valgrind test ! -e "/proc/$(cat fake.id)"
       PATH=$real_path
-      expect accuracy_counts_after_all 0 'by valgrind over the picture' accuracy cube "${tiny[@]}" -o other --rounds 1
+      expect accuracy_counts_after_all 0 'by valgrind over the picture' accuracy cube "${counting[@]}" -o other --rounds 1
       if strip -o stripped "$program" 2>/dev/null; then
         run=("$PWD/stripped")
-        expect accuracy_without_symbols 0 'not counted: .* no symbols' accuracy cube "${tiny[@]}" -o third --rounds 1
+        expect accuracy_without_symbols 0 'not counted: .* no symbols' accuracy cube "${counting[@]}" -o third --rounds 1
         run=("$program")
       fi
     fi
@@ -63,9 +68,9 @@ if "${run[@]}" --help | grep -q '^ *accuracy '; then
   else
     echo "skipped: valgrind is not installed or cannot run $program"
   fi
-  expect accuracy_other_samples 1 'samples.*--restart' accuracy cube "${tiny[@]}" -o sweep --samples 2
+  expect accuracy_other_samples 1 'samples.*--restart' accuracy cube "${counting[@]}" -o sweep --samples 2
   echo nonsense >sweep/accuracy.state
-  expect accuracy_damaged 1 'damaged.*--restart' accuracy cube "${tiny[@]}" -o sweep
+  expect accuracy_damaged 1 'damaged.*--restart' accuracy cube "${counting[@]}" -o sweep
 fi
 
 finish

@@ -75,7 +75,6 @@ int run(const AccuracyOptions& options) {
 
 void add_accuracy_command(Command program, const Team& team, int* exit_status) {
   auto o = std::make_shared<AccuracyOptions>();
-  o->starts_valgrind = true;
   o->team = team;
   Command command = program.add_subcommand("accuracy", "measure the time cost of accuracy: sweep every setting");
   command.footer(
@@ -116,6 +115,8 @@ void add_accuracy_command(Command program, const Team& team, int* exit_status) {
       .add_option("--price-limit", o->price_limit,
                   "slowest combination of settings to try, as a multiple of the baseline's time")
       .capture_default_str();
+  command.add_flag("--count-instructions", o->starts_valgrind,
+                   "count instructions with valgrind where the CPU does not: a minute or more, hours with many lights");
   command.add_flag("--restart", o->restart, "discard the measurements in the folder and start over");
   add_json_option(command, &o->common.json);
   command.add_option("--counting-folder", o->counting_folder, "").group("");  // for the run under valgrind

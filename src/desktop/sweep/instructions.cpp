@@ -190,7 +190,7 @@ void count_by_valgrind(const AccuracyOptions& options, const Rig& rig, const Swe
       counting.points.push_back(&plan.points[i]);
   if (counting.points.empty()) return;
   if (!options.starts_valgrind) {
-    *note = kNotCounted;
+    *note = std::string(kNotCounted) + "; --count-instructions lets valgrind count them";
     return;
   }
   char path[1024];

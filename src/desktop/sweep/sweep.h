@@ -22,8 +22,8 @@ struct AccuracyOptions {
   double pixels_per_degree = kHandheldPixelsPerDegree, seconds = 0, price_limit = 16;
   bool restart = false;
   bool starts_valgrind =
-      false;  // if the CPU counts no instructions; only for a program started as `pocketray accuracy …`
-  double save_seconds = 60;                     // between saves of a running reference
+      false;                 // if the CPU counts no instructions; only in a program started as `pocketray accuracy …`
+  double save_seconds = 60;  // between saves of a running reference
   std::function<void(std::uint32_t)> row_done;  // called after each row of a reference, one at a time; may be null
   Team team;                                    // its ranks take the references' samples; this one measures
   std::string counting_folder;                  // in the process that valgrind runs: the job to render; otherwise empty
