@@ -5,7 +5,7 @@
 #include "app/commands.h"
 #include "app/options.h"
 #include "base/seal.h"
-#include "budget/front_file.h"
+#include "session/front_file.h"
 #include "budget/front_prices.h"
 #include "effect/effect_list.h"
 #include "session/cache.h"

@@ -4,6 +4,7 @@
 
 #include "accel/accel_list.h"
 #include "engine/light_map.h"
+#include "plan/quality_level.h"
 #include "scene/builtin/builtin.h"
 
 namespace pocketray {
@@ -28,7 +29,7 @@ std::string device_names() {
   return names;
 }
 
-Option add_setting_option(Command command, const SettingRow& row, SettingOption* option) {
+Option declare_setting(Command command, const SettingRow& row, SettingOption* option) {
   char range[128];
   describe_range(row, range, sizeof range);
   std::string name = std::string("--") + row.name;
@@ -37,6 +38,24 @@ Option add_setting_option(Command command, const SettingRow& row, SettingOption*
   if (row.field.kind == SettingKind::count) return command.add_option(name, option->count, help);
   if (row.field.kind == SettingKind::real) return command.add_option(name, option->real, help);
   return command.add_option(name, option->choice, help);
+}
+
+Option add_setting_option(Command command, const SettingRow& row, SettingOption* option) {
+  const Option declared = declare_setting(command, row, option);
+  option->given = [declared] { return declared.count() > 0; };
+  return declared;
+}
+
+void add_quality(Command command, CommonOptions* o) {
+  std::string names;
+  for (const char* name : kQualityLevelNames) names += std::string(names.empty() ? "" : ", ") + name;
+  command
+      .add_option(
+          "--quality", o->quality,
+          "the dial between speed and accuracy: " + names +
+              "; of the scene's front if `pocketray accuracy` measured it, otherwise built in. `pocketray plan` "
+              "shows what each level means. The single settings below change it")
+      .default_str("medium");
 }
 
 void add_scene(Command command, CommonOptions* o, bool required) {
@@ -92,6 +111,7 @@ Option add_key_option(Command command, std::string* path) {
 
 void add_scene_options(Command command, CommonOptions* o, bool scene_required) {
   add_scene(command, o, scene_required);
+  add_quality(command, o);
   for (int i = 0; i < kSettingCount; ++i)
     add_setting_option(command, kSettingList[i], &o->settings.options[i]).capture_default_str();
   add_effects(command, o);
@@ -229,6 +249,7 @@ void add_budget_options(Command command, BudgetOptions* o) {
   });
   for (const SettingRow& row : kSettingList)
     for (Option* option : {&budget, &flip}) option->excludes(command.get_option(std::string("--") + row.name));
+  for (Option* option : {&budget, &flip}) option->excludes(command.get_option("--quality"));
   command.add_option("--front", o->front, "file of settings to choose from")
       .default_str("the scene's file in the cache");
 }

@@ -11,6 +11,7 @@
 #include "session/note.h"
 #include "session/output.h"
 #include "session/picture.h"
+#include "session/quality_choice.h"
 #include "session/report.h"
 
 namespace pocketray {
@@ -56,10 +57,52 @@ Json animations_json(const Renderer& renderer) {
   return list;
 }
 
+using Levels = LevelMeaning[kQualityLevelCount];
+
+double frame_ms(const Renderer& renderer, const LevelMeaning& level) {
+  return static_cast<double>(level.candidate.ns_per_pixel) * renderer.settings.width * renderer.settings.height * 1e-6;
+}
+
+void print_levels(const Renderer& renderer, const Levels& levels) {
+  std::printf("--quality, %s\n", levels[0].is_measured
+                                     ? "as `pocketray accuracy` measured this scene (ꟻLIP to full light transport)"
+                                     : "built in; `pocketray accuracy` measures what this scene gains from each");
+  for (int i = 0; i < kQualityLevelCount; ++i) {
+    char change[kFrontLineMax];
+    describe_change(Quality(), levels[i].candidate, change, sizeof change);
+    std::printf("  %-7s", kQualityLevelNames[i]);
+    if (levels[i].is_measured)
+      std::printf(" %8.1f ms, ꟻLIP %.3f ", frame_ms(renderer, levels[i]),
+                  static_cast<double>(levels[i].candidate.flip));
+    std::printf(" %s\n", same_quality(levels[i].candidate, Quality()) ? "the defaults" : change);
+  }
+}
+
+Json levels_json(const Renderer& renderer, const Levels& levels) {
+  Json list = Json::array();
+  for (int i = 0; i < kQualityLevelCount; ++i) {
+    char settings[kFrontLineMax];
+    format_quality(levels[i].candidate, settings, sizeof settings);
+    const bool is_measured = levels[i].is_measured;
+    list.push_back({{"level", kQualityLevelNames[i]},
+                    {"settings", settings},
+                    {"measured", is_measured},
+                    {"ms", is_measured ? Json(frame_ms(renderer, levels[i])) : Json()},
+                    {"flip", is_measured ? Json(levels[i].candidate.flip) : Json()}});
+  }
+  return list;
+}
+
 int run(const CommonOptions& options, bool prices) {
   OpenScene opened;
+  Levels levels;
   Status status = check_outputs({{"SCENE", options.scene}}, {{"--json", options.json}});
-  if (status.ok) status = open_scene(options, {picture_bytes}, &opened);
+  OpenHooks hooks = {picture_bytes};
+  hooks.loaded = [&](const SceneSource& source, Renderer* loaded) {
+    find_levels(options.scene, source, loaded, levels);
+    return success();
+  };
+  if (status.ok) status = open_scene(options, hooks, &opened);
   const Renderer& renderer = opened.renderer;
   if (renderer.memory.plan.total_bytes > 0) {  // planned, even if it does not fit
     print_notes(opened);
@@ -68,6 +111,7 @@ int run(const CommonOptions& options, bool prices) {
       print_animations(renderer);
       print_effects(renderer.effects);
       print_memory(renderer.memory.plan);
+      print_levels(renderer, levels);
       const char* without = renderer.history.state.unplanned_because;
       std::printf("coherence: %s%s\n", without ? "every frame is traced whole: " : "only what changes is traced",
                   without ? without : "");
@@ -78,6 +122,7 @@ int run(const CommonOptions& options, bool prices) {
                    {"fits", status.ok},
                    {"accelerator", renderer.accel.info->name},
                    {"coherence", renderer.history.state.planned},
+                   {"quality", levels_json(renderer, levels)},
                    {"animations", animations_json(renderer)},
                    {"effects", effects_json(renderer.effects)},
                    {"memory", memory_json(renderer.memory.plan)}};

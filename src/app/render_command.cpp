@@ -51,11 +51,17 @@ std::size_t output_bytes(const RenderOptions& o, const RenderRequest& asked, con
   return size_sum(bytes, arena_need(std::uint64_t(settings.width) * settings.height * 4));
 }
 
+// True if pictures keep 8 bits of each channel.
+bool shows_24_bits(const RenderRequest& asked) {
+  return !has_suffix(asked.kind.c_str(), ".raw") || asked.picture.raw_format.bits_per_pixel > 16;
+}
+
 // Opens the scene with a budget, without servers.
 Status open_budgeted(const RenderOptions& o, const OutputBytes& bytes, RenderJob* job, OpenScene* opened,
                      Budget* budget) {
   OpenFront front;
-  RETURN_IF_ERROR(open_scene_with_front(o.common, front_source(o.budget), bytes, opened, &front));
+  RETURN_IF_ERROR(
+      open_scene_with_front(o.common, front_source(o.budget, shows_24_bits(job->asked)), bytes, opened, &front));
   print_notes(front);
   Renderer* renderer = &opened->renderer;
   start_budget(o.budget, front, *renderer, job->asked.sequence.last - job->asked.sequence.first + 12, budget);

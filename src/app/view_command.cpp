@@ -31,7 +31,7 @@ struct Loading {
   Loading(const CommonOptions& options, const BudgetOptions& budget, Viewer* viewer)
       : servers(viewer->servers), thread([this, &options, &budget, viewer] {
           status = chooses_settings(budget)
-                       ? open_scene_with_front(options, front_source(budget), viewer_bytes, opened.get(), &front)
+                       ? open_scene_with_front(options, front_source(budget, false), viewer_bytes, opened.get(), &front)
                        : open_scene_with(servers, options, viewer_bytes, opened.get());
           if (status.ok && servers)
             status = servers->backend->start(servers, &opened->renderer, viewer->format.bits_per_pixel == 16,

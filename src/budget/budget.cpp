@@ -73,6 +73,7 @@ Status load_front(const Renderer& renderer, const FrontSource& source, const Con
   if (f->is_guess) f->front = builtin_front();
   CHECK_GT(f->front.count, 0u);
   f->effects = renderer.effects.mask;
+  if (source.shows_24_bits) show_24_bits(&f->front);
   sort_front(&f->front);
   drop_what_scene_ignores(&f->front, f->effects);
   f->is_priced = adopt_prices(&f->front, f->measured);
@@ -119,7 +120,8 @@ Status plan_front(Renderer* renderer, const SceneStorage& storage, const OutputN
 
 // Drops the errors, which the scene's front holds, so that no candidate is dominated and every price is saved.
 Front prices_alone(Front front) {
-  for (std::uint32_t i = 0; i < front.count; ++i) front.candidates[i].flip = kErrorUnknown;
+  for (std::uint32_t i = 0; i < front.count; ++i)
+    front.candidates[i].flip = front.candidates[i].flip888 = kErrorUnknown;
   return front;
 }
 

@@ -4,10 +4,10 @@
 #include <string>
 #include <vector>
 
-#include "budget/front_file.h"
 #include "plan/governor.h"
 #include "plan/resolve.h"
 #include "present/hud_text.h"
+#include "session/front_file.h"
 #include "session/open_scene.h"
 #include "session/report.h"
 
@@ -44,12 +44,15 @@ struct OpenFront {
 void print_notes(const OpenFront& front);  // one line each, on stderr
 
 struct FrontSource {
-  std::string file;         // empty: the cache
-  bool may_be_new = false;  // the file need not exist yet
-  double flip_max = 0;      // drops candidates with a larger error; 0: none
-  bool fastest = false;     // keeps only the fastest
+  std::string file;            // empty: the cache
+  bool may_be_new = false;     // the file need not exist yet
+  double flip_max = 0;         // drops candidates with a larger error; 0: none
+  bool fastest = false;        // keeps only the fastest
+  bool shows_24_bits = false;  // judges pictures so; otherwise as a screen of 16 bits shows them
 };
-inline FrontSource front_source(const BudgetOptions& o) { return {o.front, false, o.flip_max, o.ms == 0}; }
+inline FrontSource front_source(const BudgetOptions& o, bool shows_24_bits) {
+  return {o.front, false, o.flip_max, o.ms == 0, shows_24_bits};
+}
 // Opens the scene, ready for rendering, with memory for the most expensive candidate. Drops candidates that do not fit,
 // with a note.
 Status open_scene_with_front(const CommonOptions& common, const FrontSource& source,

@@ -4,6 +4,7 @@
 #include "base/check.h"
 #include "effect/setting_list.h"
 #include "engine/library.h"
+#include "plan/quality_level.h"
 
 namespace pocketray {
 namespace {
@@ -63,6 +64,16 @@ Status set_number(pocketray_settings* settings, const char* name, double value) 
   return set_entry(settings, *row, value);
 }
 
+Status set_quality(pocketray_settings* settings, const char* name) {
+  RETURN_IF_ERROR(check_list(settings));
+  QualityLevel level;
+  if (!name || !find_quality_level(name, &level))
+    return failure("the quality is '%.60s': it must be draft, low, medium, high or best", name ? name : "");
+  const Quality quality = builtin_level(level, 0);
+  for (const SettingRow& row : kSettingList) RETURN_IF_ERROR(set_entry(settings, row, row.field.get(quality)));
+  return success();
+}
+
 Status get_number(const pocketray_settings* settings, const char* name, double* value) {
   RETURN_IF_ERROR(check_list(settings));
   const SettingRow* row;
@@ -114,6 +125,10 @@ const char* pocketray_choice_name(const char* setting, std::uint32_t index) {
 
 pocketray_result pocketray_set_number(pocketray_settings* settings, const char* name, double value) {
   return to_result(set_number(settings, name, value), POCKETRAY_ERROR_ARGUMENT);
+}
+
+pocketray_result pocketray_set_quality(pocketray_settings* settings, const char* level) {
+  return to_result(set_quality(settings, level), POCKETRAY_ERROR_ARGUMENT);
 }
 
 pocketray_result pocketray_set_choice(pocketray_settings* settings, const char* name, const char* choice) {

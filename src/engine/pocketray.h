@@ -115,6 +115,9 @@ POCKETRAY_API const char* pocketray_choice_name(const char* setting, uint32_t in
  * the number is out of range. */
 POCKETRAY_API pocketray_result pocketray_set_number(pocketray_settings* settings, const char* name, double value);
 POCKETRAY_API pocketray_result pocketray_set_choice(pocketray_settings* settings, const char* name, const char* choice);
+/* Puts all settings of a level of quality into the list: "draft", "low", "medium" (the defaults), "high" or "best".
+ * POCKETRAY_ERROR_ARGUMENT: there is no such level. */
+POCKETRAY_API pocketray_result pocketray_set_quality(pocketray_settings* settings, const char* level);
 /* Stores the value in the list, otherwise the default; of a choice its index. */
 POCKETRAY_API pocketray_result pocketray_get_number(const pocketray_settings* settings, const char* name,
                                                     double* value);

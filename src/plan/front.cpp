@@ -57,6 +57,12 @@ bool errors_known(const Front& front) {
   return true;
 }
 
+void show_24_bits(Front* front) {
+  CHECK_LE(front->count, kFrontCandidateMax);
+  for (std::uint32_t i = 0; i < front->count; ++i)
+    if (!std::isnan(front->candidates[i].flip888)) front->candidates[i].flip = front->candidates[i].flip888;
+}
+
 void sort_by_price(Front* front) {
   CHECK_LE(front->count, kFrontCandidateMax);
   for (std::uint32_t i = 1; i < front->count; ++i)

@@ -2,12 +2,12 @@
 // first.
 // As a text file, it has one candidate per line below a line with the version:
 //
-//   pocketray-front 1
+//   pocketray-front 2
 //   samples=4 depth=8 area-lights=16 cut-off=0.5 texture-filter=scene normals=scene indirect=auto
-//   reconstruction=bicubic virtual-lights=64 flip=0.0123 ns=812
+//   reconstruction=bicubic virtual-lights=64 flip=0.0123 flip888=0.0101 ns=812
 //
-// Names are those of the command line's options; an unmeasured error is omitted. Empty lines and lines that begin with
-// # are ignored.
+// Names are those of the command line's options; unmeasured errors are omitted. Empty lines and lines that begin with
+// # are ignored. Errors of version 1 were relative to the renderer's own lighting model.
 #pragma once
 #include <algorithm>
 #include <cstddef>
@@ -25,8 +25,9 @@ constexpr float kPriceNsMin = 1e-3f, kPriceNsMax = 1e9f;  // limits of a pixel's
 constexpr float kErrorUnknown = std::numeric_limits<float>::quiet_NaN();
 
 struct Candidate : Quality {
-  float flip = kErrorUnknown;  // mean ꟻLIP of the picture, in [0, 1]; NaN: not measured
-  float ns_per_pixel = 1;      // average over a frame; comparable only with prices measured alongside
+  float flip = kErrorUnknown;  // mean ꟻLIP to the truth, in [0, 1], as a screen of 16 bits shows it; NaN: not measured
+  float flip888 = kErrorUnknown;  // likewise with 24 bits, as pictures are written
+  float ns_per_pixel = 1;         // average over a frame; comparable only with prices measured alongside
 };
 
 struct Front {
@@ -44,6 +45,8 @@ Settings with_candidate(const Settings& settings, const Quality& quality);
 
 // Returns whether every error of the front was measured; otherwise the order is by accuracy, whatever the prices.
 bool errors_known(const Front& front);
+// Judges candidates as with 24 bits, where that error is known.
+void show_24_bits(Front* front);
 void sort_by_price(Front* front);
 // If all errors are known, sorts by price and drops candidates that are neither cheaper nor more accurate than another.
 void sort_front(Front* front);
@@ -66,7 +69,7 @@ Status parse_front(const void* bytes, std::size_t byte_count, Front* front);
 // Upper bound of a written line: "name=value " for each setting, error and price, and the end.
 constexpr std::size_t front_line_bytes() {
   constexpr std::size_t kRealBytes = 17;  // with %.9g
-  std::size_t bytes = sizeof "flip= ns=" + 2 * kRealBytes;
+  std::size_t bytes = sizeof "flip= flip888= ns=" + 3 * kRealBytes;
   for (const SettingRow& row : kSettingList) {
     std::size_t value = kRealBytes;
     for (int i = 0; i < row.field.name_count; ++i) value = std::max(value, text_length(row.field.names[i]));

@@ -11,12 +11,16 @@
 namespace pocketray {
 namespace {
 
-constexpr char kFirstLine[] = "pocketray-front 1";
+constexpr char kFirstLine[] = "pocketray-front 2";
 constexpr char kFirstWord[] = "pocketray-front";
 // Settings come first, in list order.
-enum Key : int { flip = kSettingCount, ns, kKeyCount };
+enum Key : int { flip = kSettingCount, flip888, ns, kKeyCount };
 static_assert(kKeyCount <= 32, "one bit per key");
-const char* key_name(int key) { return key == flip ? "flip" : key == ns ? "ns" : kSettingList[key].name; }
+const char* key_name(int key) {
+  constexpr const char* kOthers[] = {"flip", "flip888", "ns"};
+  return key < kSettingCount ? kSettingList[key].name : kOthers[key - kSettingCount];
+}
+bool is_error(int key) { return key == flip || key == flip888; }
 
 struct Text {
   const char* begin;
@@ -76,7 +80,10 @@ bool read_setting(const SettingRow& row, const Text& text, double* value) {
 }
 
 bool read_value(int key, const Text& text, Candidate* c, double* setting) {
-  if (key == flip) return read_real(text, &c->flip) && c->flip >= 0 && c->flip <= 1;
+  if (is_error(key)) {
+    float* error = key == flip ? &c->flip : &c->flip888;
+    return read_real(text, error) && *error >= 0 && *error <= 1;
+  }
   if (key == ns)
     return read_real(text, &c->ns_per_pixel) && c->ns_per_pixel >= kPriceNsMin && c->ns_per_pixel <= kPriceNsMax;
   return read_setting(kSettingList[key], text, setting);
@@ -113,7 +120,7 @@ Status read_candidate(Text line, unsigned line_number, Candidate* c) {
     if (!(seen >> key & 1u) && kSettingList[key].may_be_absent)
       settings[key] = kSettingList[key].field.get(Quality()), seen |= 1u << key;
   for (int key = 0; key < kKeyCount; ++key)
-    if (key != flip && !(seen >> key & 1u)) return failure("line %u: %s= is missing", line_number, key_name(key));
+    if (!is_error(key) && !(seen >> key & 1u)) return failure("line %u: %s= is missing", line_number, key_name(key));
   for (int i = 0; i < kSettingCount; ++i) {
     Status status = check_setting(kSettingList[i], settings[i]);
     if (!status.ok) return failure("line %u: %.300s", line_number, status.message);
@@ -132,7 +139,8 @@ Status parse_lines(Text rest, Front* front) {
       is_front = equals(line, kFirstLine);
       if (is_front) continue;
       if (line.count >= sizeof kFirstWord && std::memcmp(line.begin, kFirstWord, sizeof kFirstWord - 1) == 0)
-        return failure("line 1: '%s': this program only reads version 1", Printable(line).text);
+        return failure("line 1: '%s': this program only reads version 2: measure the front with `pocketray accuracy`",
+                       Printable(line).text);
       break;
     }
     if (line.count == 0 || line.begin[0] == '#') continue;
@@ -200,6 +208,7 @@ std::size_t format_front(const Front& front, char* text, std::size_t size) {
     const Candidate& c = front.candidates[i];
     append_quality(c, text, size, &length);
     if (!std::isnan(c.flip)) append(text, size, &length, " flip=%.9g", static_cast<double>(c.flip));
+    if (!std::isnan(c.flip888)) append(text, size, &length, " flip888=%.9g", static_cast<double>(c.flip888));
     append(text, size, &length, " ns=%.9g\n", static_cast<double>(c.ns_per_pixel));
   }
   return length;

@@ -12,6 +12,7 @@
 #include "session/focus.h"
 #include "session/interrupt.h"
 #include "session/note.h"
+#include "session/quality_choice.h"
 #include "session/radiosity.h"
 
 namespace pocketray {
@@ -95,6 +96,8 @@ Status open_scene(const CommonOptions& o, const OpenHooks& hooks, OpenScene* ope
   RETURN_IF_ERROR(set_environment_if_requested(o.environment, renderer, &opened->source, &storage));
   RETURN_IF_ERROR(check_outputs_of(o, opened->source.files));
   RETURN_IF_ERROR(solve_if_requested(o.scene, renderer, &opened->source, &storage));
+  RETURN_IF_ERROR(set_quality(o, opened->source, renderer));
+  opened->asked = settings = renderer->settings;
   if (hooks.loaded) RETURN_IF_ERROR(hooks.loaded(opened->source, renderer));
   Status planned = hooks.plan(renderer, storage, hooks.output_bytes(settings));
   if (!planned.ok && renderer->memory.plan.total_bytes > renderer->memory.plan.limit_bytes)

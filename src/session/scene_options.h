@@ -1,5 +1,6 @@
 // Command-line options for a scene and its rendering, as text, and their parsing.
 #pragma once
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,7 @@ struct SettingOption {
   std::uint32_t count = 0;
   float real = 0;
   std::string choice;
+  std::function<bool()> given;  // on the command line; null: if it differs from the default
 };
 // One per row of setting_list.h, initially the defaults.
 struct SettingOptions {
@@ -43,6 +45,7 @@ struct CommonOptions {
   std::vector<NamedFile> outputs;
   std::string output_folder;
   SettingOptions settings;
+  std::string quality;  // a level of plan/quality_level.h; empty: medium, without looking for a measured front
   std::string coherence = "off";
   std::uint32_t coherence_table = Settings().coherence_table;
 };

@@ -233,6 +233,8 @@ static void odd_settings(pocketray_instance* instance) {
   wrong("name", pocketray_set_number(&s, "sample", 1), "no setting 'sample'");
   wrong("name", pocketray_set_choice(&s, NULL, "flat"), "null");
   wrong("choice", pocketray_set_choice(&s, "normals", NULL), "null");
+  wrong("quality", pocketray_set_quality(&s, "superb"), "medium");
+  wrong("quality", pocketray_set_quality(&s, NULL), "medium");
   wrong("value", pocketray_get_number(&s, "samples", NULL), "null");
   wrong("settings", pocketray_set_number(NULL, "samples", 1), "null");
   EXPECT(s.count == 0 && s.list[0].name == NULL);

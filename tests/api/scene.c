@@ -65,6 +65,33 @@ static void every_setting_has_a_name(void) {
   pocketray_close(instance);
 }
 
+/* A level of quality is a list of settings, which later calls replace one by one. */
+static void quality_is_a_list_of_settings(void) {
+  static api_picture usual, medium, best;
+  pocketray_settings settings = POCKETRAY_SETTINGS_INIT;
+  pocketray_options options = api_options();
+  pocketray_instance* instance = api_open("cornell", NULL, 0);
+  api_render(instance, 0, &usual);
+  pocketray_close(instance);
+  EXPECT_OK(pocketray_set_quality(&settings, "best"));
+  EXPECT_OK(pocketray_set_quality(&settings, "medium"));
+  options.settings = &settings;
+  instance = api_open("cornell", &options, 0);
+  api_render(instance, 0, &medium);
+  pocketray_close(instance);
+  EXPECT(memcmp(&medium, &usual, sizeof usual) == 0);
+  double samples, points;
+  EXPECT_OK(pocketray_set_quality(&settings, "best"));
+  EXPECT_OK(pocketray_set_number(&settings, "samples", 2));
+  EXPECT_OK(pocketray_get_number(&settings, "samples", &samples));
+  EXPECT_OK(pocketray_get_number(&settings, "area-lights", &points));
+  EXPECT(samples == 2 && points > 4);
+  instance = api_open("cornell", &options, 0);
+  api_render(instance, 0, &best);
+  EXPECT(memcmp(&best, &usual, sizeof usual) != 0);
+  pocketray_close(instance);
+}
+
 /* A setting that only the list of names has: more virtual lights give another picture. */
 static void instant_radiosity_is_set_by_name(void) {
   static api_picture ambient, few, many;
@@ -384,6 +411,7 @@ static void exposure_is_set_and_measured(void) {
 const api_case api_scene_cases[] = {
     {"settings_are_those_of_opening", settings_are_those_of_opening},
     {"every_setting_has_a_name", every_setting_has_a_name},
+    {"quality_is_a_list_of_settings", quality_is_a_list_of_settings},
     {"instant_radiosity_is_set_by_name", instant_radiosity_is_set_by_name},
     {"cameras_are_set_and_read", cameras_are_set_and_read},
     {"lights_come_change_and_go", lights_come_change_and_go},

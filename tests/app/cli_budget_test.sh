@@ -5,21 +5,21 @@
 # Goal: settings along a front keep a time budget; their prices are stored, and the choice is reported. Method: a front of
 # one candidate gives the picture of its settings; files in a cache of their own; budgets beyond any machine in both ways.
 one="samples=2 depth=1 area-lights=2 cut-off=0 texture-filter=nearest normals=flat indirect=auto reconstruction=bicubic virtual-lights=64 selective=0 resolution=full light-tolerance=0.0625 environment-shadows=32"
-printf 'pocketray-front 1\n%s flip=0.25 ns=1\n' "$one" >one.front
+printf 'pocketray-front 2\n%s flip=0.25 ns=1\n' "$one" >one.front
 expect budget_front_file 0 'expected ꟻLIP 0.2500; traded away: nothing' \
   render "$subject" "${small[@]}" --budget-ms 1000000 --front one.front -o budget.ppm
 "${run[@]}" render "$subject" "${small[@]}" --samples 2 --depth 1 --area-lights 2 --cut-off 0 --texture-filter nearest \
   --normals flat -o settings.ppm >/dev/null
 check budget_gives_the_picture_of_its_settings cmp -s budget.ppm settings.ppm
 check budget_keeps_the_price_it_learnt grep -q '^samples=2 depth=1 .* flip=0.25 ns=[0-9.e+]*$' one.front
-printf 'pocketray-front 1\n%s flip=0.25 ns=1\n' "$one" >kept.front
+printf 'pocketray-front 2\n%s flip=0.25 ns=1\n' "$one" >kept.front
 expect budget_front_read_only 0 'prices are not saved' \
   render "$subject" "${small[@]}" --budget-ms 1000000 --front /dev/fd/3 -o kept.ppm 3<kept.front
 check budget_front_read_only_renders cmp -s budget.ppm kept.ppm
 # The scene has neither area lights nor reflections, and the last candidate is dominated: all remain, each with its own
 # price.
 quality="cut-off=0 texture-filter=nearest normals=flat indirect=auto reconstruction=bicubic virtual-lights=64 selective=0 resolution=full light-tolerance=0.0625 environment-shadows=32"
-printf "pocketray-front 1\n%s $quality flip=%s ns=%s\n%s $quality flip=%s ns=%s\n%s $quality flip=%s ns=%s\n" \
+printf "pocketray-front 2\n%s $quality flip=%s ns=%s\n%s $quality flip=%s ns=%s\n%s $quality flip=%s ns=%s\n" \
   'samples=1 depth=1 area-lights=1' 0.5 1 'samples=1 depth=3 area-lights=4' 0.25 2 'samples=2 depth=4 area-lights=1' 0.75 3 \
   >three.front
 expect budget_front_of_another_scene 0 'expected ꟻLIP 0.2500' \
@@ -41,7 +41,7 @@ if [ ${#run[@]} -eq 1 ] && "${run[@]}" bake --help | grep -q -- --radiosity; the
   printf '%s\n' 'mtllib lamp.mtl' 'v -5 3 -5' 'v 5 3 -5' 'v 5 3 5' 'v -5 3 5' 'v 0 0 0' 'v 0 0 .3' 'v .3 0 0' \
     'usemtl lamp' 'f 1 2 3 4' 'usemtl grey' 'f 5 6 7' >lamp.obj
   "${run[@]}" bake lamp.obj --radiosity -o lamp.pray >/dev/null 2>&1
-  printf 'pocketray-front 1\n%s flip=0.25 ns=1\n' "${one/bicubic/cubic}" >cubic.front
+  printf 'pocketray-front 2\n%s flip=0.25 ns=1\n' "${one/bicubic/cubic}" >cubic.front
   expect budget_plans_gradients 0 'reconstruction=cubic' \
     render lamp.pray "${small[@]}" --budget-ms 1000000 --front cubic.front -o found.ppm
 fi
@@ -55,7 +55,7 @@ expect front_without_budget 1 'choose from: add --budget-ms' render cube "${smal
 # Goal: --flip-max takes the fastest settings whose error was measured to be small enough, whatever they take, and with a
 # time the best of these. Method: three candidates whose pictures differ; the picture of each by name.
 rest="depth=1 area-lights=1 cut-off=0 texture-filter=nearest normals=flat indirect=auto reconstruction=bicubic virtual-lights=64 light-tolerance=0.0625 environment-shadows=32"
-printf "pocketray-front 1\nsamples=1 $rest selective=0.5 resolution=half flip=0.1 ns=100\nsamples=1 $rest selective=0 resolution=full flip=0.02 ns=1000\nsamples=9 $rest selective=0 resolution=full flip=0.01 ns=9000\n" >errors.front
+printf "pocketray-front 2\nsamples=1 $rest selective=0.5 resolution=half flip=0.1 ns=100\nsamples=1 $rest selective=0 resolution=full flip=0.02 ns=1000\nsamples=9 $rest selective=0 resolution=full flip=0.01 ns=9000\n" >errors.front
 cp errors.front as_measured.front
 settings=(--depth 1 --area-lights 1 --cut-off 0 --texture-filter nearest --normals flat)
 "${run[@]}" render "$subject" "${small[@]}" "${settings[@]}" -o plain.ppm >/dev/null
@@ -83,7 +83,7 @@ expect flip_max_of_a_view 0 'ꟻLIP ≤ 0.05: samples=1' \
   view "$subject" "${small[@]}" --screen null --frames 2 --flip-max .05 --front as_measured.front
 for most in 0 -1 nan 1.5 soon; do expect "flip_max_$most" 1 'flip-max' render cube "${small[@]}" --flip-max "$most"; done
 expect front_is_not_there 1 'no such file' render cube "${small[@]}" --budget-ms 40 --front none.front -o refused.ppm
-printf 'pocketray-front 1\nsamples=99\n' >bad.front
+printf 'pocketray-front 2\nsamples=99\n' >bad.front
 expect front_is_bad 1 'bad.front: line 2: ' render cube "${small[@]}" --budget-ms 40 --front bad.front -o refused.ppm
 expect budget_aov 1 '--aov' render cube "${small[@]}" --budget-ms 40 --aov depth -o refused.ppm
 expect orbit_of_a_lone_frame 1 '--frames' render cube "${small[@]}" --orbit 2 -o refused.ppm

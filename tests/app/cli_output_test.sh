@@ -18,7 +18,7 @@ for i in "${!commands[@]}"; do
   name=${names[i]}
   mkdir -p real
   (umask 077 && : >"real/$name")
-  case $name in *.front) printf 'pocketray-front 1\n%s flip=0.25 ns=1\n' "$quality" >"real/$name" ;; esac
+  case $name in *.front) printf 'pocketray-front 2\n%s flip=0.25 ns=1\n' "$quality" >"real/$name" ;; esac
   ln -s "real/$name" "$name"
   expect "replaces_$name" 0 '' "${command[@]}" "$name"
   check "keeps_the_link_$name" test -L "$name" -a -s "real/$name"

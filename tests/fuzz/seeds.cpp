@@ -136,7 +136,7 @@ std::vector<FuzzSeed> front_seeds() {
   append(&both, text_of(front));
   return {{"builtin", text_of(front)},
           {"with_prices", both},
-          {"comments", bytes_of("pocketray-front 1\r\n\n# what follows\nsamples=4 depth=8 area-lights=16 "
+          {"comments", bytes_of("pocketray-front 2\r\n\n# what follows\nsamples=4 depth=8 area-lights=16 "
                                 "cut-off=5e-1 "
                                 "texture-filter=nearest normals=flat indirect=auto reconstruction=bicubic "
                                 "virtual-lights=64 selective=0 resolution=full light-tolerance=0.0625 "

@@ -14,7 +14,7 @@ using namespace pocketray;
 
 namespace {
 
-const std::string kHead = "pocketray-front 1\n";
+const std::string kHead = "pocketray-front 2\n";
 const std::string kLine =
     "samples=4 depth=8 area-lights=16 cut-off=0.5 "
     "texture-filter=scene normals=scene indirect=auto "
@@ -119,7 +119,7 @@ TEST_CASE("front_text_faults_are_named") {
   } kFaults[] = {
       {"", "begins with"},
       {"hello\n", "begins with"},
-      {"pocketray-front 2\n" + kLine, "version 1"},
+      {"pocketray-front 1\n" + kLine, "version 2"},
       {kHead, "no candidate"},
       {kHead + "samples=4\n", "line 2: depth= is missing"},
       {kHead + "# one\n" + kLine + kLine, "line 4: these settings"},
@@ -334,4 +334,18 @@ TEST_CASE("front_describes_changes") {
   char few[8];
   describe_change(b, a, few, sizeof few);
   CHECK(std::string(few) == "samples");
+}
+
+// Goal: pictures that are written are judged with their 24 bits, where that error is known.
+TEST_CASE("front_is_judged_with_24_bits") {
+  Front front;
+  front.count = 3;
+  for (std::uint32_t i = 0; i < 3; ++i) front.candidates[i].samples_per_pixel = i + 1, front.candidates[i].flip = 0.25f;
+  front.candidates[0].flip888 = 0.125f, front.candidates[1].flip888 = 0.5f;
+  Front read;
+  REQUIRE(parse(text_of(front), &read).ok);
+  show_24_bits(&read);
+  CHECK(read.candidates[0].flip == 0.125f);
+  CHECK(read.candidates[1].flip == 0.5f);
+  CHECK(read.candidates[2].flip == 0.25f);
 }

@@ -1,7 +1,7 @@
 // pocketray accuracy: measures what accuracy costs in time.
 #include "app/accuracy/accuracy_command.h"
 #include "app/options.h"
-#include "budget/front_file.h"
+#include "session/front_file.h"
 #include "desktop/accuracy/csv.h"
 #include "desktop/accuracy/gnuplot.h"
 #include "desktop/accuracy/report.h"

@@ -13,6 +13,8 @@ Candidate candidate_of(const Measured& m, const Settings& settings, Judge judge)
   Candidate candidate = candidate_of(settings);
   const auto flip = [](double value) { return static_cast<float>(std::min(std::max(value, 0.0), 1.0)); };
   candidate.flip = flip(distance_to(m, judge).flip);
+  if (judge == Judge::truth)
+    candidate.flip888 = flip(m.flip_as[static_cast<std::size_t>(find_output_format("rgb888"))]);
   candidate.ns_per_pixel = clamped_price(m.ns_per_pixel.value);
   return candidate;
 }

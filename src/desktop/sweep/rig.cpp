@@ -5,7 +5,7 @@
 
 #include "base/check.h"
 #include "base/limits.h"
-#include "budget/front_file.h"
+#include "session/front_file.h"
 #include "desktop/sweep/sweep.h"
 #include "effect/setting_list.h"
 #include "engine/frame.h"

@@ -1,4 +1,4 @@
-#include "budget/front_file.h"
+#include "session/front_file.h"
 
 #include <cinttypes>
 

@@ -1,0 +1,53 @@
+#include "session/quality_choice.h"
+
+#include "plan/plan_effects.h"
+#include "session/front_file.h"
+#include "session/scene_identity.h"
+
+namespace pocketray {
+namespace {
+
+bool is_given(const SettingOption& option, const SettingRow& row, const Settings& read) {
+  return option.given ? option.given() : row.field.get(read) != row.field.get(Quality());
+}
+
+}  // namespace
+
+void find_levels(const std::string& scene, const SceneSource& source, Renderer* renderer,
+                 LevelMeaning (&levels)[kQualityLevelCount]) {
+  Front front;
+  ContentHash identity;
+  bool there = false;
+  const bool is_measured = identify_scene(source, renderer, &identity).ok &&
+                           read_front(front_path(scene, identity), &front, &there).ok && front.count > 1 &&
+                           errors_known(front);
+  Settings automatic = renderer->settings;
+  automatic.indirect = IndirectChoice::automatic;
+  const EffectMask effects = plan_effects(renderer->scene, automatic).mask;
+  if (is_measured) show_24_bits(&front);
+  for (int i = 0; i < kQualityLevelCount; ++i) {
+    const auto level = static_cast<QualityLevel>(i);
+    Front alone;
+    alone.candidates[alone.count++] =
+        is_measured ? level_of(front, level) : candidate_of(builtin_level(level, effects));
+    drop_what_scene_ignores(&alone, effects);
+    levels[i] = {alone.candidates[0], is_measured};
+  }
+}
+
+Status set_quality(const CommonOptions& o, const SceneSource& source, Renderer* renderer) {
+  if (o.quality.empty()) return success();
+  QualityLevel level;
+  if (!find_quality_level(o.quality.c_str(), &level))
+    return failure("--quality is '%.60s': it must be draft, low, medium, high or best", o.quality.c_str());
+  LevelMeaning levels[kQualityLevelCount];
+  find_levels(o.scene, source, renderer, levels);
+  const Settings read = renderer->settings;
+  renderer->settings = with_candidate(read, levels[static_cast<int>(level)].candidate);
+  for (int i = 0; i < kSettingCount; ++i)
+    if (is_given(o.settings.options[i], kSettingList[i], read))
+      kSettingList[i].field.set(&renderer->settings, kSettingList[i].field.get(read));
+  return success();
+}
+
+}  // namespace pocketray

@@ -1,0 +1,20 @@
+// What a level of quality means for a scene.
+#pragma once
+#include "plan/quality_level.h"
+#include "session/scene_options.h"
+
+namespace pocketray {
+
+struct LevelMeaning {
+  Candidate candidate;       // with its error and price if it is measured
+  bool is_measured = false;  // a point of the scene's front in the cache; otherwise built in
+};
+
+// Reads the levels of a scene between load_scene() and plan_renderer(), for which `renderer` holds it.
+void find_levels(const std::string& scene, const SceneSource& source, Renderer* renderer,
+                 LevelMeaning (&levels)[kQualityLevelCount]);
+
+// Sets what --quality asks for, except the settings given on the command line.
+Status set_quality(const CommonOptions& options, const SceneSource& source, Renderer* renderer);
+
+}  // namespace pocketray

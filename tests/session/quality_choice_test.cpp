@@ -1,0 +1,56 @@
+#include "session/quality_choice.h"
+
+#include <doctest/doctest.h>
+#include <stdlib.h>
+
+#include "session/open_scene.h"
+#include "session/picture.h"
+
+using namespace pocketray;
+
+namespace {
+
+Settings settings_with(const CommonOptions& options) {
+  setenv("XDG_CACHE_HOME", "/nonexistent", 1);
+  OpenScene opened;
+  const Status status = open_scene(options, {picture_bytes}, &opened);
+  REQUIRE_MESSAGE(status.ok, status.message);
+  return opened.renderer.settings;
+}
+
+CommonOptions high() {
+  CommonOptions o;
+  o.scene = "cornell", o.size = "16x12", o.quality = "high";
+  return o;
+}
+
+}  // namespace
+
+// Goal: --quality sets what the command line leaves open. Method: a setting that differs from its default, and one that
+// was given at its default.
+TEST_CASE("quality_leaves_settings_of_the_command_line") {
+  CHECK(settings_with(high()).samples_per_pixel == 4);
+  CHECK(settings_with(high()).virtual_lights == 256);
+  CommonOptions o = high();
+  o.settings["virtual-lights"].count = 16;
+  CHECK(settings_with(o).virtual_lights == 16);
+  CHECK(settings_with(o).samples_per_pixel == 4);
+  o.settings["samples"].given = [] { return true; };
+  CHECK(settings_with(o).samples_per_pixel == 1);
+  o.quality.clear();
+  CHECK(settings_with(o).indirect == IndirectChoice::automatic);
+}
+
+// Goal: a level asks for nothing that the scene ignores. Method: cornell has neither environment nor textures.
+TEST_CASE("quality_asks_for_nothing_without_effect") {
+  CHECK(settings_with(high()).environment_shadows == Quality().environment_shadows);
+}
+
+TEST_CASE("quality_must_be_a_level") {
+  CommonOptions o = high();
+  o.quality = "superb";
+  OpenScene opened;
+  const Status status = open_scene(o, {picture_bytes}, &opened);
+  CHECK_FALSE(status.ok);
+  CHECK(std::string(status.message).find("draft, low, medium, high or best") != std::string::npos);
+}
