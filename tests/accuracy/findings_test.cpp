@@ -24,6 +24,22 @@ TEST_CASE("findings_front_is_sorted_by_time") {
   CHECK(front_of(sweep, Judge::model).size() == 1);
 }
 
+// Goal: of configurations that show the same, the front has the first unless another is clearly faster. Method: twins
+// of the baseline, a little and much faster, and one that is nearer by a little.
+TEST_CASE("findings_front_has_no_twins") {
+  Sweep sweep = empty_sweep();
+  sweep.measured.push_back(sample_measured("indirect", "radiosity", 38, 0.08));
+  std::vector<const Measured*> front = front_of(sweep, Judge::truth);
+  REQUIRE(front.size() == 1);
+  CHECK(front[0]->knob == "baseline");
+  sweep.measured.push_back(sample_measured("cut-off", "16", 20, 0.08));
+  front = front_of(sweep, Judge::truth);
+  REQUIRE(front.size() == 1);
+  CHECK(front[0]->knob == "cut-off");
+  sweep.measured.push_back(sample_measured("samples", "2", 39, 0.07));
+  CHECK(front_of(sweep, Judge::truth).size() == 2);
+}
+
 // Goal: a knob's ends are its first and last value with figures. Method: the last has none; a claimed gain, one too
 // small for the reference, and a loss.
 TEST_CASE("findings_ends_are_the_first_and_last_with_figures") {

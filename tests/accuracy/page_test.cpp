@@ -137,9 +137,29 @@ TEST_CASE("page_is_well_formed_and_shows_each_knob") {
                            "#front_gpDot", "Andersson", "<li>fog &amp; mist are left out</li>", "samples 2, normals 2",
                            "512", "prefers-color-scheme: dark", "FLIP 0.200"})
     CHECK_MESSAGE(has(page, part), part);
+  // Each figure leads to its row, counted from the header.
+  CHECK(has(page, "<th><a href=\"accuracy.csv#row=3\">1*</a></th>"));
+  CHECK(has(page, "<th class=\"name\"><span><a href=\"accuracy.csv#row=2\">baseline</a></span></th>"));
   for (std::string part : {"<b>&\"", "http://", "https://", "<?xml", "Gnuplot"}) CHECK_MESSAGE(!has(page, part), part);
   CHECK(page == page_of(sweep, pictures));
   CHECK(page.size() < 100000);
+}
+
+// Goal: the first screen shows what each level of quality sets and gets, beside the truth. Method: two levels, one with
+// its picture; a sweep without levels.
+TEST_CASE("page_opens_with_what_to_set") {
+  Sweep sweep = sample_sweep();
+  sweep.choices = {{"low", "--samples 1", 12.5, 0.25, sample_picture(4, 3, 0)},
+                   {"best", "", 480, 0.0625, sample_picture(4, 3, 1)}};
+  PagePictures pictures;
+  pictures.choices["low"] = "png", pictures.truth_png = "truth";
+  const std::string page = page_of(sweep, pictures);
+  CHECK(markup_fault(page) == "");
+  CHECK(has(page, "<b>low</b> 12.5 ms, FLIP 0.250<br /><code>--quality low: --samples 1</code>"));
+  CHECK(has(page, "<b>best</b> 480 ms, FLIP 0.0625<br /><code>--quality best</code>"));
+  CHECK(has(page, "<b>full light transport</b> 256 samples per pixel"));
+  CHECK(page.find("--quality low") < page.find("What a user sees"));
+  CHECK(!has(page_of(sample_sweep(), {}), "--quality"));
 }
 
 // Goal: the page begins with the knob that buys the most and claims nothing finer than the reference can tell. Method:

@@ -24,8 +24,28 @@ std::vector<const Measured*> values_of(const Sweep& sweep, const std::string& kn
 
 namespace {
 
+bool shows_same(const Measured& a, const Measured& b, Judge judge) {
+  const Distance &one = distance_to(a, judge), &other = distance_to(b, judge);
+  return one.flip == other.flip && one.one == other.one && one.other == other.other;
+}
+
+// Drops configurations that show what one before them shows and are hardly faster: settings that the scene ignores, by
+// the noise of their times.
+std::vector<const Measured*> without_twins(const std::vector<const Measured*>& all, Judge judge) {
+  constexpr double kHardlyFaster = 0.9;
+  std::vector<const Measured*> kept;
+  for (const Measured* m : all) {
+    const bool is_twin = std::any_of(kept.begin(), kept.end(), [&](const Measured* before) {
+      return m->ns_per_pixel.value >= kHardlyFaster * before->ns_per_pixel.value && shows_same(*m, *before, judge);
+    });
+    if (!is_twin) kept.push_back(m);
+  }
+  return kept;
+}
+
 // Of the configurations, those on their front, fastest first.
-std::vector<const Measured*> front_among(const std::vector<const Measured*>& all, Judge judge) {
+std::vector<const Measured*> front_among(const std::vector<const Measured*>& every, Judge judge) {
+  const std::vector<const Measured*> all = without_twins(every, judge);
   std::vector<const Measured*> front;
   std::vector<double> cost;
   std::vector<const Distance*> distance;

@@ -51,13 +51,39 @@ std::string samples_text(const ReferenceFigures& reference) {
              : format(" (%u samples per pixel, own error FLIP ", reference.samples) + figure(reference.flip, 2) + ")";
 }
 
+// One picture of the first screen: what it looks like, costs and takes to get.
+std::string choice_card(const std::string& png, const std::string& name, const std::string& figures,
+                        const std::string& how) {
+  return "<figure>" + (png.empty() ? "" : image(png, name)) + "<figcaption><b>" + escaped(name) + "</b> " + figures +
+         "<br /><code>" + escaped(how) + "</code></figcaption></figure>\n";
+}
+
+// What to set and what one gets, level by level.
+std::string choices_of(const Sweep& sweep, const PagePictures& pictures) {
+  if (sweep.choices.empty()) return "";
+  std::string cards;
+  for (const Choice& choice : sweep.choices) {
+    auto png = pictures.choices.find(choice.level);
+    cards += choice_card(png == pictures.choices.end() ? "" : png->second, choice.level,
+                         figure(choice.ms) + " ms, FLIP " + figure(choice.flip),
+                         "--quality " + choice.level + (choice.settings.empty() ? "" : ": " + choice.settings));
+  }
+  cards += choice_card(pictures.truth_png, text_of(Judge::truth),
+                       sweep.truth.samples ? format("%u samples per pixel", sweep.truth.samples) : "", "reference");
+  return "<div class=\"tiles choices\">\n" + cards +
+         "</div>\n<p>FLIP is how different a picture looks from full light "
+         "transport when one flips between them: .01 is hard to see, .05 seen at once, .2 another picture. "
+         "<code>--budget-ms</code> takes the best setting for a time, <code>--flip-max</code> the fastest for an "
+         "error.</p>\n";
+}
+
 std::string head_of(const Sweep& sweep, const PagePictures& pictures) {
   std::string title = "What accuracy costs in time: " + escaped(sweep.scene.substr(sweep.scene.rfind('/') + 1));
   std::string text = page_begin(title) + "<header>\n<div>\n<h1>" + title + "</h1>\n<p class=\"soft\">" +
                      (sweep.scene.find('/') == std::string::npos ? "" : escaped(sweep.scene) + ", ") +
                      format("%u × %u pixels", sweep.width, sweep.height) + ", " + escaped(sweep.machine) + ", " +
                      std::to_string(sweep.rounds) + " rounds; the baseline’s output is " + escaped(sweep.output) +
-                     ".</p>\n";
+                     ".</p>\n</div>\n</header>\n" + choices_of(sweep, pictures) + "<header>\n<div>\n";
   text += "<p>What a user sees is judged by <b>" + std::string(text_of(Judge::truth)) +
           "</b>, path traced in double precision" + samples_text(sweep.truth) +
           "; numerical settings by <b>the converged lighting model</b>" + samples_text(sweep.model) +

@@ -46,6 +46,11 @@ std::string name_of(const Measured& m) {
   return escaped(m.knob == "several" ? m.value : m.knob + " " + m.value);
 }
 
+// A link to the configuration's row of the CSV file [RFC 7111, sec. 2.1].
+std::string row_link(const Sweep& sweep, const Measured& m, const std::string& text) {
+  return "<a href=\"accuracy.csv#row=" + std::to_string(&m - sweep.measured.data() + 2) + "\">" + text + "</a>";
+}
+
 std::string bytes_text(double bytes) { return std::isfinite(bytes) ? format("%.0f", bytes) : "–"; }
 
 std::string end_text(const Sweep& sweep, const KnobFigures& knob, const Measured* m, bool in_bytes) {
@@ -84,9 +89,9 @@ std::string front_table(const Sweep& sweep, Judge judge) {
   std::string rows;
   int number = 0;
   for (const Measured* m : front_of(sweep, judge))
-    rows += "<tr>" + cell(std::to_string(++number), "key") + "<th class=\"name\"><span>" + name_of(*m) +
-            "</span></th>" + cell(ms_text(sweep, m->ns_per_pixel)) + cell(ratio_text(m->time_ratio)) +
-            cell(figure(distance_to(*m, judge).flip)) + "</tr>\n";
+    rows += "<tr>" + cell(std::to_string(++number), "key") + "<th class=\"name\"><span>" +
+            row_link(sweep, *m, name_of(*m)) + "</span></th>" + cell(ms_text(sweep, m->ns_per_pixel)) +
+            cell(ratio_text(m->time_ratio)) + cell(figure(distance_to(*m, judge).flip)) + "</tr>\n";
   return boxed(headings({"", "setting", "ms per frame", "× baseline", "FLIP"}), rows);
 }
 
@@ -94,7 +99,8 @@ std::string method_table(const Sweep& sweep) {
   std::string rows;
   for (const std::string& method : methods_of(sweep))
     for (const Measured* m : method_front(sweep, method))
-      rows += "<tr><th>" + escaped(method) + "</th>" + cell(escaped(own_settings(*m))) +
+      rows += "<tr><th>" + escaped(method) + "</th>" +
+              cell(row_link(sweep, *m, own_settings(*m).empty() ? "baseline" : escaped(own_settings(*m)))) +
               cell(ms_text(sweep, m->ns_per_pixel)) + cell(figure(m->truth.flip)) + "</tr>\n";
   return boxed(headings({"method", "settings", "ms per frame", "FLIP"}), rows);
 }
@@ -110,7 +116,7 @@ std::string value_table(const Sweep& sweep, const std::string& knob) {
   std::string rows;
   for (const Measured* m : values) {
     rows += m->is_default ? "<tr class=\"standard\">" : "<tr>";
-    rows += "<th>" + escaped(m->value) + (m->is_default ? "*" : "") +
+    rows += "<th>" + row_link(sweep, *m, escaped(m->value) + (m->is_default ? "*" : "")) +
             (m->note.empty() ? "" : "<br /><small>" + escaped(m->note) + "</small>") + "</th>";
     if (!m->missing.empty()) {
       rows += "<td class=\"missing\" colspan=\"" + std::to_string(names.size() - 1) +

@@ -25,6 +25,9 @@ std::string read_file(const std::string& path) {
 Status write_strips(const std::string& folder, const Sweep& sweep, const WriteFile& write, PagePictures* pictures) {
   if (!sweep.reference_picture.rgb.empty())
     RETURN_IF_ERROR(encode_png(sweep.reference_picture, &pictures->reference_png));
+  if (!sweep.truth_picture.rgb.empty()) RETURN_IF_ERROR(encode_png(sweep.truth_picture, &pictures->truth_png));
+  for (const Choice& choice : sweep.choices)
+    RETURN_IF_ERROR(encode_png(choice.picture, &pictures->choices[choice.level]));
   for (const Strip& strip : sweep.strips) {
     std::string* png = &pictures->strips[strip.knob];
     RETURN_IF_ERROR(encode_png(draw_strip(sweep.reference_picture, strip), png));

@@ -92,6 +92,14 @@ struct Strip {
   std::vector<StripRow> rows;  // a few values, least accurate first
 };
 
+// What a level of quality sets and gets.
+struct Choice {
+  std::string level, settings;  // "high"; as options: "--samples 4 --area-lights 16", empty: the defaults
+  double ms = 0;                // per frame
+  double flip = 0;              // to the truth, as pictures are written
+  Levels picture;
+};
+
 // A reference's samples per pixel, both seeds together, and its own error.
 struct ReferenceFigures {
   std::uint32_t samples = 0;
@@ -111,6 +119,7 @@ struct Sweep {
   std::vector<Measured> measured;                                   // the baseline first
   std::vector<KnobFigures> knobs;
   std::vector<Strip> strips;
+  std::vector<Choice> choices;     // by level, the least accurate first; empty: there is no front
   std::vector<std::string> notes;  // one line each: skipped knobs and why, …
 };
 

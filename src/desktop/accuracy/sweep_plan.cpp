@@ -104,6 +104,8 @@ void add_settings(const Settings& settings, const std::vector<const Knob*>& knob
 
 // Rays per pixel in comparisons of methods, since smooth edges count as much as indirect light.
 constexpr std::uint32_t kMethodSamples = 4;
+// A ladder has few settings, so each may take this many times as long as others.
+constexpr double kLadderLimit = 4;
 
 // Adds each method of indirect light with every combination of its own settings, at the baseline's samples and at
 // kMethodSamples.
@@ -165,7 +167,7 @@ SweepPlan plan_sweep(const std::string& scene, const EffectPlan& effects, const 
   add_covering_set(baseline, price_limit, &plan);
   std::vector<const Knob*> swept;
   for (const SweptKnob& each : plan.knobs) swept.push_back(each.knob);
-  for (const Settings& settings : ladder) add_settings(settings, swept, can_be_had, price_limit, &plan);
+  for (const Settings& settings : ladder) add_settings(settings, swept, can_be_had, kLadderLimit * price_limit, &plan);
   if (!effects_with) return plan;
   add_methods(can_be_had, price_limit, effects_with, &plan);
   for (SweepPoint& point : plan.points) point.indirect = name_of_method(effects_with(point.configuration.settings));

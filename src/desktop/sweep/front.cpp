@@ -23,19 +23,12 @@ Candidate candidate_of(const Measured& m, const Settings& settings, Judge judge)
 
 Front front_of_sweep(const SweepPlan& plan, const Sweep& sweep) {
   CHECK_EQ(sweep.measured.size(), plan.points.size());
-  std::vector<Candidate> all;
-  std::vector<double> cost;
-  std::vector<const Distance*> distance;
-  for (std::size_t i = 0; i < plan.points.size(); ++i) {
-    const Measured& m = sweep.measured[i];
-    if (!is_judged(m, sweep.judge) || !plan.points[i].is_choice) continue;
-    all.push_back(candidate_of(m, plan.points[i].configuration.settings, sweep.judge));
-    cost.push_back(m.ns_per_pixel.value), distance.push_back(&distance_to(m, sweep.judge));
-  }
-  const std::vector<bool> is_on_front = claimed_front(cost, distance);
   Front front;
-  for (std::size_t i = 0; i < all.size(); ++i)
-    if (is_on_front[i] && front.count < kFrontCandidateMax) front.candidates[front.count++] = all[i];
+  for (const Measured* m : front_of(sweep, sweep.judge)) {
+    if (front.count == kFrontCandidateMax) break;
+    const std::size_t point = static_cast<std::size_t>(m - sweep.measured.data());
+    front.candidates[front.count++] = candidate_of(*m, plan.points[point].configuration.settings, sweep.judge);
+  }
   sort_front(&front);
   return front;
 }

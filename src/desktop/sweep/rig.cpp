@@ -5,12 +5,12 @@
 
 #include "base/check.h"
 #include "base/limits.h"
-#include "session/front_file.h"
 #include "desktop/sweep/sweep.h"
 #include "effect/setting_list.h"
 #include "engine/frame.h"
 #include "platform/instructions.h"
 #include "scene/baked.h"
+#include "session/front_file.h"
 #include "session/interrupt.h"
 #include "session/scene_identity.h"
 

@@ -3,13 +3,16 @@
 #include "base/check.h"
 #include "plan/plan_effects.h"
 #include "plan/plan_lights.h"
+#include "plan/quality_level.h"
 
 namespace pocketray {
 namespace {
 
-// The ladder, which --budget-ms uses without a measured front, is also measured.
+// The ladder, which --budget-ms uses without a measured front, is also measured, and so are the levels of quality.
 std::vector<Settings> ladder_of(const Renderer& renderer) {
   Front front = builtin_front();
+  for (int i = 0; i < kQualityLevelCount && front.count < kFrontCandidateMax; ++i)
+    front.candidates[front.count++] = candidate_of(builtin_level(static_cast<QualityLevel>(i), renderer.effects.mask));
   drop_what_scene_ignores(&front, renderer.effects.mask);
   std::vector<Settings> ladder;
   for (std::uint32_t i = 0; i < front.count; ++i)

@@ -16,6 +16,7 @@
 #include "desktop/sweep/references.h"
 #include "desktop/sweep/rigs.h"
 #include "effect/setting_list.h"
+#include "plan/quality_level.h"
 #include "platform/instructions.h"
 #include "session/interrupt.h"
 #include "session/progress.h"
@@ -112,6 +113,18 @@ Distance distance_of(const ReferencePictures& reference, const std::vector<float
   d.one = block_means(against_one, width, height), d.other = block_means(against_other, width, height);
   *noise = against_mean - d.flip;
   return d;
+}
+
+// The quality's options, except those at their defaults.
+std::string options_of(const Quality& quality) {
+  std::string options;
+  for (const SettingRow& row : kSettingList) {
+    if (row.field.get(quality) == row.field.get(Quality())) continue;
+    char value[32];
+    describe_value(row, row.field.get(quality), 3, value, sizeof value);
+    options += (options.empty() ? "--" : " --") + std::string(row.name) + " " + value;
+  }
+  return options;
 }
 
 // After an interrupt there are none.
@@ -277,6 +290,30 @@ Status render_references(SweepRun* run, Sweep* sweep, bool* whole) {
   return success();
 }
 
+// Renders the pictures of the levels of quality.
+Status add_choices(SweepRun* run, const Front& measured, Sweep* sweep, bool* whole) {
+  if (measured.count < 2 || sweep->judge != Judge::truth) return success();
+  Front front = measured;
+  show_24_bits(&front);
+  for (int i = 0; i < kQualityLevelCount; ++i) {
+    const Candidate candidate = level_of(front, static_cast<QualityLevel>(i));
+    Configuration configuration = run->plan.points[0].configuration;
+    configuration.settings = with_candidate(configuration.settings, candidate);
+    configuration.output = find_output_format("rgb888");
+    Rig* rig;
+    RETURN_IF_ERROR(rig_for(&run->rigs, configuration, &rig));
+    double ns_per_pixel;
+    RETURN_IF_ERROR(time_frame(rig, configuration, run->options.seconds, &ns_per_pixel));
+    *whole = !interrupted;
+    if (!*whole) return success();
+    Choice choice = {
+        kQualityLevelNames[i], options_of(candidate), ms_of(*sweep, candidate.ns_per_pixel), candidate.flip, {}};
+    RETURN_IF_ERROR(find_levels(*run, rig, configuration, &choice.picture, nullptr));
+    sweep->choices.push_back(choice);
+  }
+  return success();
+}
+
 Status check_options(const AccuracyOptions& o) {
   if (find_output_format(o.output) < 0)
     return failure("--pixel-format is '%s': it must be rgb565, rgb565-dithered or rgb888", o.output.c_str());
@@ -340,7 +377,10 @@ Status measure_sweep(const AccuracyOptions& options, Sweep* sweep, bool* whole, 
   for (const SweepPoint& point : run.plan.points) figures.push_back(run.state.points[id_of(point)]);
   sweep->rounds = run.state.rounds;
   sum_up(run.plan, figures, sweep);
-  if (front) *front = {front_of_sweep(run.plan, *sweep), rig.front_path};
+  const Front measured = front_of_sweep(run.plan, *sweep);
+  if (front) *front = {measured, rig.front_path};
+  RETURN_IF_ERROR(add_choices(&run, measured, sweep, whole));
+  if (!*whole) return success();
   for (const SweptKnob& swept : run.plan.knobs) {
     RETURN_IF_ERROR(add_strip(&run, swept, sweep, whole));
     if (!*whole) return success();
