@@ -42,6 +42,11 @@ Difference difference(const Distance& a, const Distance& b) {
 
 bool is_claimed(const Difference& difference) { return std::fabs(difference.value) > 2 * difference.error; }
 
+bool is_nearer(const Distance& a, const Distance& b) {
+  const Difference gain = difference(a, b);
+  return gain.value > kVisibleStep * a.flip && is_claimed(gain);
+}
+
 const Distance& distance_to(const Measured& m, Judge judge) { return judge == Judge::truth ? m.truth : m.model; }
 const ReferenceFigures& figures_of(const Sweep& sweep, Judge judge) {
   return judge == Judge::truth ? sweep.truth : sweep.model;
@@ -57,10 +62,7 @@ std::vector<bool> claimed_front(const std::vector<double>& cost, const std::vect
   std::vector<bool> front(cost.size());
   const Distance* last = nullptr;
   for (std::size_t i : order) {
-    if (last) {
-      const Difference gain = difference(*last, *distance[i]);
-      if (!(gain.value > kFrontStep * last->flip && is_claimed(gain))) continue;
-    }
+    if (last && !is_nearer(*last, *distance[i])) continue;
     front[i] = true, last = distance[i];
   }
   return front;

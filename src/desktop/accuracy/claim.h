@@ -25,14 +25,15 @@ Difference difference(const Distance& a, const Distance& b);
 // Two standard errors: about 95 % of such claims about equal pictures would be avoided.
 bool is_claimed(const Difference& difference);
 
-// A step of a front is nearer by at least this share of the error; smaller ones are not seen.
-constexpr double kFrontStep = 0.01;
+// Returns whether `b` is claimed to be nearer than `a` by a step that can be seen.
+constexpr double kVisibleStep = 0.01;  // of the error; chosen
+bool is_nearer(const Distance& a, const Distance& b);
 
 const Distance& distance_to(const Measured& m, Judge judge);
 const ReferenceFigures& figures_of(const Sweep& sweep, Judge judge);
 
 // Marks the points that no other beats: in order of cost, a point joins if it is claimed to be nearer than the last
-// that joined, by kFrontStep or more.
+// that joined.
 std::vector<bool> claimed_front(const std::vector<double>& cost, const std::vector<const Distance*>& distance);
 
 }  // namespace pocketray

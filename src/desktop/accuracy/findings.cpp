@@ -120,9 +120,7 @@ double gain_of(const KnobFigures& knob, const KnobEnds& ends) {
 }
 
 bool gain_claimed(const KnobFigures& knob, const KnobEnds& ends) {
-  if (!ends.worst) return false;
-  const Difference gain = difference(distance_to(*ends.worst, knob.judge), distance_to(*ends.best, knob.judge));
-  return gain.value > 0 && is_claimed(gain);
+  return ends.worst && is_nearer(distance_to(*ends.worst, knob.judge), distance_to(*ends.best, knob.judge));
 }
 
 bool is_paid_in_bytes(const KnobEnds& ends) {

@@ -62,7 +62,7 @@ std::string choice_card(const std::string& png, const std::string& name, const s
 std::string choices_of(const Sweep& sweep, const PagePictures& pictures) {
   if (sweep.choices.empty()) return "";
   std::string cards;
-  for (const Choice& choice : sweep.choices) {
+  for (const LevelPicture& choice : sweep.choices) {
     auto png = pictures.choices.find(choice.level);
     cards += choice_card(png == pictures.choices.end() ? "" : png->second, choice.level,
                          figure(choice.ms) + " ms, FLIP " + figure(choice.flip),

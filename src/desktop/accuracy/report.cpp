@@ -26,7 +26,7 @@ Status write_strips(const std::string& folder, const Sweep& sweep, const WriteFi
   if (!sweep.reference_picture.rgb.empty())
     RETURN_IF_ERROR(encode_png(sweep.reference_picture, &pictures->reference_png));
   if (!sweep.truth_picture.rgb.empty()) RETURN_IF_ERROR(encode_png(sweep.truth_picture, &pictures->truth_png));
-  for (const Choice& choice : sweep.choices)
+  for (const LevelPicture& choice : sweep.choices)
     RETURN_IF_ERROR(encode_png(choice.picture, &pictures->choices[choice.level]));
   for (const Strip& strip : sweep.strips) {
     std::string* png = &pictures->strips[strip.knob];

@@ -93,7 +93,7 @@ struct Strip {
 };
 
 // What a level of quality sets and gets.
-struct Choice {
+struct LevelPicture {
   std::string level, settings;  // "high"; as options: "--samples 4 --area-lights 16", empty: the defaults
   double ms = 0;                // per frame
   double flip = 0;              // to the truth, as pictures are written
@@ -119,8 +119,8 @@ struct Sweep {
   std::vector<Measured> measured;                                   // the baseline first
   std::vector<KnobFigures> knobs;
   std::vector<Strip> strips;
-  std::vector<Choice> choices;     // by level, the least accurate first; empty: there is no front
-  std::vector<std::string> notes;  // one line each: skipped knobs and why, …
+  std::vector<LevelPicture> choices;  // by level, the least accurate first; empty: there is no front
+  std::vector<std::string> notes;     // one line each: skipped knobs and why, …
 };
 
 // An RMSE below this many times the reference's own is not claimed.

@@ -93,10 +93,10 @@ KnobFigures figures_of(const SweptKnob& swept, const SweepPlan& plan, const std:
     find_slope(figures, faster, sweep, &k);
   }
   if (!worst || !one_renderer) return k;
-  const Difference gain = difference(distance_to(*worst, k.judge), distance_to(*best, k.judge));
-  if (gain.value > 0 && is_claimed(gain))
-    k.ms_per_flip =
-        (best->ns_per_pixel.value - worst->ns_per_pixel.value) * 1e-6 * sweep.width * sweep.height * 0.01 / gain.value;
+  const Distance &from = distance_to(*worst, k.judge), &to = distance_to(*best, k.judge);
+  if (is_nearer(from, to))
+    k.ms_per_flip = (best->ns_per_pixel.value - worst->ns_per_pixel.value) * 1e-6 * sweep.width * sweep.height * 0.01 /
+                    (from.flip - to.flip);
   return k;
 }
 

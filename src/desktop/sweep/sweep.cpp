@@ -306,7 +306,7 @@ Status add_choices(SweepRun* run, const Front& measured, Sweep* sweep, bool* who
     RETURN_IF_ERROR(time_frame(rig, configuration, run->options.seconds, &ns_per_pixel));
     *whole = !interrupted;
     if (!*whole) return success();
-    Choice choice = {
+    LevelPicture choice = {
         kQualityLevelNames[i], options_of(candidate), ms_of(*sweep, candidate.ns_per_pixel), candidate.flip, {}};
     RETURN_IF_ERROR(find_levels(*run, rig, configuration, &choice.picture, nullptr));
     sweep->choices.push_back(choice);
