@@ -60,7 +60,7 @@ Status load_front(const Renderer& renderer, const FrontSource& source, const Con
     std::string folder = f->path.substr(0, f->path.rfind('/') + 1);
     if (!there && !folder.empty() && platform::file_stamp(folder.c_str()) == 0)
       return failure("--front is %.300s: no such folder; create it, or name another", f->path.c_str());
-    f->file = there ? f->front : builtin_front();
+    f->file = there ? f->front : builtin_front(renderer.effects.mask);
   } else if (identity) {
     f->path = front_path(f->scene, *identity, machine_name(renderer.pace.device, renderer.settings.threads));
     if (f->path.empty()) f->notes.push_back("prices are not saved: set XDG_CACHE_HOME or HOME to a folder");
@@ -70,7 +70,7 @@ Status load_front(const Renderer& renderer, const FrontSource& source, const Con
     if (!status.ok) f->notes.push_back(std::string(status.message) + "; measuring prices again");
   }
   f->is_guess = f->front.count == 0;
-  if (f->is_guess) f->front = builtin_front();
+  if (f->is_guess) f->front = builtin_front(renderer.effects.mask);
   CHECK_GT(f->front.count, 0u);
   f->effects = renderer.effects.mask;
   if (source.shows_24_bits) show_24_bits(&f->front);

@@ -106,33 +106,46 @@ bool adopt_prices(Front* front, const Front& measured) {
   return true;
 }
 
-Front builtin_front() {
+bool lacks_indirect_light(EffectMask effects) {
+  constexpr EffectMask kLights =
+      bit(Effect::point_light) | bit(Effect::spot_light) | bit(Effect::directional_light) | bit(Effect::area_light);
+  return has(effects, Effect::ambient) && (effects & kLights) != 0;
+}
+
+Front builtin_front(EffectMask effects) {
   constexpr struct {
     std::uint32_t samples, depth, area_lights;
     float cut_off, contrast;
     Resolution resolution = Resolution::full;
     float light_tolerance = 0.0625f;
     std::uint32_t environment_shadows = 32;
-  } kLadder[] = {{1, 0, 1, 4, 0.5f, Resolution::half, 0.5f},
-                 {1, 0, 1, 4, 0.5f, Resolution::full, 0.5f},
-                 {1, 1, 1, 4, 0.25f, Resolution::full, 0.25f},
-                 {1, 2, 2, 0.5f, 0.25f, Resolution::full, 0.125f},
-                 {1, 8, 4, 0.5f, 0.25f},
-                 {1, 8, 4, 0.5f, 0.125f},
-                 {1, 8, 4, 0.5f, 0},
+    std::uint32_t virtual_lights = 256;  // where the scene lacks indirect light: with compensation; 0: none
+  } kLadder[] = {{1, 0, 1, 4, 0.5f, Resolution::half, 0.5f, 32, 0},
+                 {1, 0, 1, 4, 0.5f, Resolution::full, 0.5f, 32, 0},
+                 {1, 1, 1, 4, 0.25f, Resolution::full, 0.25f, 32, 0},
+                 {1, 2, 2, 0.5f, 0.25f, Resolution::full, 0.125f, 32, 0},
+                 {1, 8, 4, 0.5f, 0.25f, Resolution::full, 0.0625f, 32, 0},
+                 {1, 8, 4, 0.5f, 0.125f, Resolution::full, 0.0625f, 32, 0},
+                 {1, 8, 4, 0.5f, 0, Resolution::full, 0.0625f, 32, 0},
+                 {1, 8, 4, 0.5f, 0, Resolution::full, 0.0625f, 32, 128},
                  {2, 8, 4, 0.5f, 0},
                  {4, 8, 4, 0.5f, 0},
                  {4, 8, 8, 0.5f, 0, Resolution::full, 0.0625f, 64},
                  {8, 8, 8, 0.5f, 0, Resolution::full, 0.0625f, 64},
                  {8, 8, 16, 0.5f, 0, Resolution::full, 0.0625f, 128},
-                 {16, 8, 16, 0.5f, 0, Resolution::full, 0.0625f, 128},
-                 {16, 8, 64, 0.5f, 0, Resolution::full, 0.0625f, 256},
-                 {16, 16, 64, 0, 0, Resolution::full, 0, 256}};
+                 {16, 8, 16, 0.5f, 0, Resolution::full, 0.0625f, 128, 512},
+                 {16, 8, 64, 0.5f, 0, Resolution::full, 0.0625f, 256, 512},
+                 {16, 16, 64, 0, 0, Resolution::full, 0, 256, 512}};
   static_assert(sizeof kLadder / sizeof kLadder[0] <= kFrontCandidateMax, "a front holds them");
   Front front;
   Candidate c;
   c.texture_filter = TextureFilter::nearest;
+  const bool takes_virtual_lights = lacks_indirect_light(effects);
   for (const auto& row : kLadder) {
+    if (takes_virtual_lights && row.virtual_lights) {
+      c.indirect = indirect_choice(Effect::instant_radiosity);
+      c.virtual_lights = row.virtual_lights, c.compensation = Compensation::rays;
+    }
     c.samples_per_pixel = row.samples;
     c.ray_depth = row.depth;
     c.points_per_area_light = row.area_lights;
@@ -146,10 +159,12 @@ Front builtin_front() {
     double exact = row.cut_off == 0 ? 1.2 : row.cut_off > 1 ? 0.95 : 1.0;
     double sample_ns = exact * (200 + 40 * reach + (c.texture_filter == TextureFilter::nearest ? 0 : 10) +
                                 60 * points * (1 + 0.1 * reach));
+    if (c.compensation == Compensation::rays) sample_ns += 300 + 1.6 * c.virtual_lights;
     double traced = row.contrast == 0 ? 1 : row.contrast < 0.25f ? 0.5 : row.contrast < 0.5f ? 0.42 : 0.36;
     if (row.resolution == Resolution::half) traced *= 0.6;
     c.ns_per_pixel = static_cast<float>(sample_ns * traced * row.samples);
-    front.candidates[front.count++] = c;
+    // Without virtual lights, the first row that has them repeats the one before.
+    if (front.count == 0 || !same_quality(c, front.candidates[front.count - 1])) front.candidates[front.count++] = c;
     c.texture_filter = TextureFilter::as_scene;
   }
   return front;

@@ -55,9 +55,13 @@ void sort_front(Front* front);
 // nothing if the fronts have no candidate in common.
 bool adopt_prices(Front* front, const Front& measured);
 
-// The default front when nothing was measured: from the least to the most that a device might do, each candidate at
-// least as accurate as the one before. Prices are guesses.
-Front builtin_front();
+// True if light from other surfaces is a constant in a plan with these effects, though the scene has lights that cause
+// it: instant radiosity is nearer to the truth.
+bool lacks_indirect_light(EffectMask effects);
+
+// The default front when nothing was measured of a scene whose plan has these effects: from the least to the most that
+// a device might do, each candidate at least as accurate as the one before. Prices are guesses.
+Front builtin_front(EffectMask effects);
 // Drops candidates that make the same picture as another with these effects, such as those that differ in area lights
 // where there are none.
 void drop_what_scene_ignores(Front* front, EffectMask effects);

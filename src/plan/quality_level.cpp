@@ -48,10 +48,7 @@ Quality builtin_level(QualityLevel level, EffectMask effects) {
       q.samples_per_pixel = 16, q.points_per_area_light = 16, q.environment_shadows = 128, q.virtual_lights = 512;
       break;
   }
-  // Where light from other surfaces is a constant, and the scene has lights that can cause it.
-  constexpr EffectMask kLights =
-      bit(Effect::point_light) | bit(Effect::spot_light) | bit(Effect::directional_light) | bit(Effect::area_light);
-  if (level >= QualityLevel::high && has(effects, Effect::ambient) && (effects & kLights) != 0) {
+  if (level >= QualityLevel::high && lacks_indirect_light(effects)) {
     q.indirect = indirect_choice(Effect::instant_radiosity);
     q.compensation = Compensation::rays;
   } else {

@@ -95,7 +95,7 @@ TEST_CASE("budget_is_kept_on_a_flight") {
   const std::uint32_t frame_count = static_cast<std::uint32_t>(effort(140));
   for (const char* name : {"cornell", "seesaw"}) {
     Flight flight(name, effort_side(24), effort_side(18));
-    Front front, ladder = builtin_front();
+    Front front, ladder = builtin_front(0);
     for (std::uint32_t i = 0; i < ladder.count; ++i)
       if (ladder.candidates[i].points_per_area_light <= kPointsMax)
         front.candidates[front.count++] = ladder.candidates[i];

@@ -67,8 +67,8 @@ void fuzz_front(const std::uint8_t* bytes, std::size_t byte_count) {
   bool is_front = parse_front(text.data(), text.size(), &front).ok;
   bool has_prices = parse_front(more.data(), more.size(), &prices).ok;
   if (!is_front) CHECK_EQ(front.count, 0u);
-  if (is_front) check(front), use(front, has_prices ? prices : builtin_front());
-  if (has_prices) check(prices), use(builtin_front(), prices);
+  if (is_front) check(front), use(front, has_prices ? prices : builtin_front(0));
+  if (has_prices) check(prices), use(builtin_front(0), prices);
   fuzz_counts.fronts += is_front + has_prices;
 }
 

@@ -125,7 +125,7 @@ std::vector<FuzzSeed> front_seeds() {
     return Bytes(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(length));
   };
   auto bytes_of = [](const std::string& text) { return Bytes(text.begin(), text.end()); };
-  Front front = builtin_front(), few = front;
+  Front front = builtin_front(0), few = front;
   few.count = 3;
   for (std::uint32_t i = 0; i < few.count; ++i) {
     few.candidates[i].flip = 0.1f / static_cast<float>(i + 1);

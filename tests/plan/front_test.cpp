@@ -233,7 +233,7 @@ TEST_CASE("front_keeps_what_nothing_dominates") {
 
 // Goal: measured prices replace others, and unmeasured ones are scaled accordingly. Method: closed form.
 TEST_CASE("front_adopts_prices") {
-  Front front = builtin_front(), measured;
+  Front front = builtin_front(0), measured;
   CHECK(!adopt_prices(&front, measured));
   measured.candidates[0] = front.candidates[2];
   measured.candidates[1] = front.candidates[4];
@@ -262,7 +262,7 @@ TEST_CASE("front_prices_stay_in_range") {
   CHECK(clamped_price(std::nan("")) == kPriceNsMin);
   CHECK(clamped_price(812) == 812);
   for (float extreme : {kPriceNsMin, kPriceNsMax}) {
-    Front front = builtin_front(), measured, back;
+    Front front = builtin_front(0), measured, back;
     std::uint32_t end = extreme == kPriceNsMin ? front.count - 1 : 0;
     measured.candidates[measured.count++] = front.candidates[end];
     measured.candidates[0].ns_per_pixel = extreme;
@@ -273,11 +273,12 @@ TEST_CASE("front_prices_stay_in_range") {
   }
 }
 
-// Goal: the built-in ladder only ever adds accuracy, and a scene is offered no two settings with the same picture.
-// Method: each knob of a step is at least that of the step before; for every set of effects, no two candidates are the
-// same, and those that matter to it stay.
-TEST_CASE("front_builtin_ascends") {
-  Front front = builtin_front();
+namespace {
+
+// Checks that each knob of a step is at least that of the step before, and that no two candidates are the same for any
+// set of effects.
+void check_ascent(EffectMask plan) {
+  Front front = builtin_front(plan);
   CHECK(!errors_known(front));
   for (std::uint32_t i = 1; i < front.count; ++i) {
     const Candidate &a = front.candidates[i - 1], &b = front.candidates[i];
@@ -289,6 +290,7 @@ TEST_CASE("front_builtin_ascends") {
     CHECK(b.cut_off_levels <= a.cut_off_levels);
     CHECK(b.selective_contrast <= a.selective_contrast);
     CHECK(b.resolution <= a.resolution);
+    CHECK((b.indirect >= a.indirect && b.virtual_lights >= a.virtual_lights && b.compensation >= a.compensation));
     CHECK(validate_settings(with_candidate(Settings(), b)).ok);
   }
   for (std::uint64_t effects = 0; effects <= kAllEffects; effects += 3000017) {
@@ -302,8 +304,25 @@ TEST_CASE("front_builtin_ascends") {
   drop_what_scene_ignores(&all, kAllEffects);
   CHECK(all.count == front.count);
   drop_what_scene_ignores(&plain, 0);
-  CHECK(plain.count ==
-        9);  // 1, 2, 4, 8 and 16 samples; of 1, some pixels interpolated at three contrasts, or a quarter
+  // 1, 2, 4, 8 and 16 samples; of 1, some pixels interpolated at three contrasts, or a quarter. Virtual lights add 128 of
+  // them with one sample, and the tolerance 0 at the end.
+  CHECK(plain.count == (lacks_indirect_light(plan) ? 11 : 9));
+}
+
+}  // namespace
+
+// Goal: the built-in ladder only ever adds accuracy, and a scene is offered no two settings with the same picture.
+// Method: each knob of a step is at least that of the step before; for every set of effects, no two candidates are the
+// same, and those that matter to it stay.
+TEST_CASE("front_builtin_ascends") {
+  constexpr EffectMask kLit = bit(Effect::ambient) | bit(Effect::area_light);
+  for (EffectMask effects : {EffectMask(0), kLit, kLit | bit(Effect::radiosity), bit(Effect::ambient)})
+    check_ascent(effects);
+  const Front lit = builtin_front(kLit), unlit = builtin_front(bit(Effect::ambient));
+  CHECK(lit.count == unlit.count + 1);
+  CHECK(lit.candidates[0].indirect == IndirectChoice::automatic);
+  CHECK(lit.candidates[lit.count - 1].indirect == indirect_choice(Effect::instant_radiosity));
+  CHECK(unlit.candidates[unlit.count - 1].indirect == IndirectChoice::automatic);
 }
 
 // Goal: candidates keep the settings of the method of indirect light that they choose, whatever method the renderer has

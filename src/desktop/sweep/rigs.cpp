@@ -10,7 +10,7 @@ namespace {
 
 // The ladder, which --budget-ms uses without a measured front, is also measured, and so are the levels of quality.
 std::vector<Settings> ladder_of(const Renderer& renderer) {
-  Front front = builtin_front();
+  Front front = builtin_front(renderer.effects.mask);
   for (int i = 0; i < kQualityLevelCount && front.count < kFrontCandidateMax; ++i)
     front.candidates[front.count++] = candidate_of(builtin_level(static_cast<QualityLevel>(i), renderer.effects.mask));
   drop_what_scene_ignores(&front, renderer.effects.mask);
