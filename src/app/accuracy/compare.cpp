@@ -88,16 +88,41 @@ double exposure_of(const Development& development, const LinearPicture& light) {
   return development.measured ? exposure_to_middle_grey(light) : development.exposure;
 }
 
-// The exposure at which light is closest to the levels, in linear light, without the channels that are clipped at
-// white.
+// Sum of squared differences of displayed light from levels, both linear, of every `step`th channel.
+double displayed_squares(const std::vector<double>& shown, const std::vector<double>& radiance, double exposure,
+                         std::size_t step) {
+  CHECK_GT(step, 0u);
+  double sum = 0;
+  for (std::size_t i = 0; i < shown.size(); i += step) {
+    const double difference = std::min(std::max(exposure * radiance[i], 0.0), 1.0) - shown[i];
+    sum += difference * difference;
+  }
+  return sum;
+}
+
+// The exposure at which displayed light is closest to the levels, in linear light; 0 if none is closer than black. A
+// scan finds the valley, since the sum has flat parts where all light is black or white.
 double exposure_of_levels(const Levels& levels, const LinearPicture& light) {
-  std::vector<double> shown, radiance;
-  for (std::size_t i = 0; i < levels.rgb.size(); ++i)
-    if (levels.rgb[i] < 255) {
-      shown.push_back(static_cast<double>(srgb_to_linear(levels.rgb[i])));
-      radiance.push_back(std::max(0.0, static_cast<double>(light.radiance[i / 3][static_cast<int>(i % 3)])));
-    }
-  return aligned_scale(shown, radiance);
+  std::vector<double> shown;
+  for (std::uint8_t level : levels.rgb) shown.push_back(static_cast<double>(srgb_to_linear(level)));
+  const std::vector<double> radiance = values_of(light);
+  constexpr std::size_t kScannedChannels = 1 << 16;
+  constexpr double kScanStops = 0.25, kRefinedStops = 1e-5, kGolden = 0.6180339887498949;
+  const std::size_t step = 1 + shown.size() / kScannedChannels;
+  double best = 0, least = displayed_squares(shown, radiance, 0, step);
+  for (double stops = -kExposureStopsMax; stops <= kExposureStopsMax; stops += kScanStops) {
+    const double squares = displayed_squares(shown, radiance, std::exp2(stops), step);
+    if (squares < least) least = squares, best = std::exp2(stops);
+  }
+  if (best == 0) return 0;
+  double low = std::log2(best) - kScanStops, high = std::log2(best) + kScanStops;
+  while (high - low > kRefinedStops) {
+    const double one = high - kGolden * (high - low), other = low + kGolden * (high - low);
+    const bool lower =
+        displayed_squares(shown, radiance, std::exp2(one), 1) < displayed_squares(shown, radiance, std::exp2(other), 1);
+    (lower ? high : low) = lower ? other : one;
+  }
+  return std::exp2(0.5 * (low + high));
 }
 
 // An exposure must be usable as a float.

@@ -31,7 +31,7 @@ Status read_picture(const std::string& path, AnyPicture* picture);
 struct Development {
   bool measured = false;  // exposure: to middle grey, of the reference if that is linear, otherwise of the test
   double exposure = 1;    // otherwise this
-  bool aligned = false;   // scale the test's light to the reference's, or expose light as the other picture is
+  bool aligned = false;   // scale the test's light to the reference's, or expose light to be closest to levels
 };
 
 struct Comparison {
@@ -49,7 +49,7 @@ struct Comparison {
 // Both must have the same size.
 Comparison compare_levels(const Levels& reference, const Levels& test, double pixels_per_degree);
 // Two linear pictures are compared in radiance and, exposed and encoded as sRGB, as displayed. Linear light beside
-// levels is exposed and quantised as `render` does. Both must have the same size. Fails if they cannot be aligned.
+// levels is exposed and quantised. Both must have the same size. Fails if they cannot be aligned.
 Status compare_pictures(const AnyPicture& reference, const AnyPicture& test, const Development& development,
                         double pixels_per_degree, Comparison* comparison);
 

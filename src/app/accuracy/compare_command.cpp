@@ -136,7 +136,8 @@ void add_compare_command(Command program, int* exit_status) {
       "magma.\n"
       "Two pictures of linear light, .pfm or .exr, are also compared in that: RMSE, relative MSE and bias, above 0 if "
       "B\n"
-      "is too bright. Beside .png, .jpg or .ppm, linear light is first exposed as `render` does.\n"
+      "is too bright. Beside .png, .jpg or .ppm, linear light is first exposed: --align finds the\n"
+      "exposure of a picture by `render`.\n"
       "Try:  pocketray compare expected.png out.png --map map.png --fail-above 0.01\n"
       "      pocketray compare reference.pfm out.exr --align");
   command.add_option("A", o->reference, "the reference: .png, .jpg, .ppm, .pfm or .exr").required();

@@ -118,12 +118,12 @@ TEST_CASE("compare_light_aligned_scale_is_the_best") {
 }
 
 // Goal: light beside levels is shown as they are; aligned, its exposure is found. Method: levels of a ramp at exposure
-// 2, one channel clipped at white.
+// 2, one channel far beyond white.
 TEST_CASE("compare_light_beside_levels_is_exposed_and_quantised") {
   AnyPicture light = constant_light(16, 8, {0, 0, 0}), levels;
   levels.levels = {16, 8, {}};
   for (std::size_t i = 0; i < 128; ++i) {
-    light.light.radiance[i] = {static_cast<float>(i) / 256, 0.25f, 0.75f};
+    light.light.radiance[i] = {static_cast<float>(i) / 256, 0.25f, 40};
     for (int c = 0; c < 3; ++c) levels.levels.rgb.push_back(srgb_level(2 * light.light.radiance[i][c]));
   }
   Comparison c = compared(levels, light, {false, 2, false});
