@@ -108,7 +108,9 @@ def share(wrong, inputs):
 
 def nanoseconds(seconds, inputs):
     ns = 1e9 * seconds / inputs
-    return f"{ns:.1f} ns" if ns < 100 else f"{grouped(round(ns))} ns"
+    if ns < 10000:
+        return f"{ns:.1f} ns" if ns < 100 else f"{grouped(round(ns))} ns"
+    return f"{ns / 1000:.1f} µs" if ns < 100000 else f"{grouped(round(ns / 1000))} µs"
 
 
 def count_text(wrong, inputs):
