@@ -110,8 +110,8 @@ TEST_CASE("hard_01_edges_by_ordinary_triangle_tests") {
     CHECK(wrong.ours == 0);
     sum.moeller_trumbore += wrong.moeller_trumbore, sum.contracted += wrong.contracted;
   }
-  CHECK(sum.moeller_trumbore > 0);  // the inputs are hard
-  if (ordinary::has_contraction()) CHECK(sum.contracted > 0);
+  CHECK(sum.moeller_trumbore > 0);                                                    // the inputs are hard
+  if (ordinary::has_contraction() && kEffortDivisor == 1) CHECK(sum.contracted > 0);  // rare: one ray in 300
 }
 
 TEST_CASE("hard_02_vertices_by_ordinary_triangle_tests") {
