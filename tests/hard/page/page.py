@@ -177,8 +177,8 @@ def head_html(cases):
     if beside:
         text += (f"; ordinary methods gave <b class=\"wrong\">{grouped(sum(b.wrong for b in beside))}</b> to "
                  f"{grouped(sum(b.inputs for b in beside))}")
-    return text + (f'.</p>\n<p class="soft">{machine()}; {sum(c.seconds for c in cases):.0f} s in all. Times are of one thread '
-                   "and hold only beside each other. Inputs are aimed at the weak spots: shares of wrong answers say nothing "
+    return text + (f'.</p>\n<p class="soft">{machine()}; {sum(c.seconds for c in cases):.0f} s in all. Times are CPU times of '
+                   "one thread and hold only beside each other. Inputs are aimed at the weak spots: shares of wrong answers say nothing "
                    "about ordinary scenes.</p>\n")
 
 
