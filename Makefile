@@ -271,7 +271,7 @@ help:
 	@echo "make test         build and run all tests (TESTS=regex: only matching ones)"
 	@echo "make test-box     boot emulated handhelds and use the program there (MACHINES='cortex-a7 aarch64': some)"
 	@echo "make softfloat    compare the arithmetic for CPUs without FPU with this CPU's, 10^9 pairs of floats"
-	@echo "make hardcases    run every hard case in full: inputs, wrong answers, bounds (JSON=FILE: also write JSON)"
+	@echo "make hardcases    run every hard case in full and write $(BUILD)/hardcases.html (JSON=FILE: also write JSON)"
 	@echo "make mutants      apply deliberate faults, one at a time: do the tests notice? (MUTANTS=--list: names,"
 	@echo "                  MUTANTS='--only x': just that one, JSON=FILE: also write JSON)"
 	@echo "make trials       extend a copy of the sources by one entry of each list and test it (TRIALS='lobe device': some)"

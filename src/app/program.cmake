@@ -45,7 +45,8 @@ endif()
 if(POCKETRAY_IMPORT)  # as the other formats of desktops
   find_package(OpenEXR 3.1 CONFIG QUIET)
   if(TARGET OpenEXR::OpenEXRCore)
-    set_property(SOURCE src/session/exr.cpp APPEND PROPERTY COMPILE_DEFINITIONS POCKETRAY_HAVE_EXR)
+    set_property(SOURCE src/session/exr.cpp src/session/exr_decode.cpp APPEND PROPERTY
+      COMPILE_DEFINITIONS POCKETRAY_HAVE_EXR)
     target_link_libraries(pocketray_app PRIVATE OpenEXR::OpenEXRCore)
   endif()
 endif()

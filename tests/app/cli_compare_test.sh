@@ -56,6 +56,54 @@ J
   done
 fi
 
+# Goal: PFM pictures are compared in linear light and as displayed. Method: constant pictures of radiance 0.5 and 0.25,
+# one with the other order of bytes: relative MSE .0625 / (.25 + .01), scale 2; what `render` and `reference` write.
+(printf 'PF\n4 3\n-1.0\n' && printf '\0\0\0\x3f%.0s' {1..36}) >half.pfm
+(printf 'PF 4 3 1 ' && printf '\x3e\x80\0\0%.0s' {1..36}) >quarter.pfm
+expect linear 0 'linear light: RMSE 0\.25, relative MSE 0\.240385, bias -0\.25, largest difference 0\.25' compare half.pfm quarter.pfm
+expect linear_displayed 0 'RMSE 0\.198[0-9]+, .*12 of 12 pixels differ' compare half.pfm quarter.pfm
+expect white 0 'exposure × 1 \(\+0\.000 stops\), as displayed' compare half.pfm quarter.pfm
+expect aligned 0 'aligned: B × 2 \(\+1\.000 stops\)' compare half.pfm quarter.pfm --align
+expect aligned_equal 0 'PSNR infinite' compare half.pfm quarter.pfm --align
+expect stops 0 'exposure × 0\.5 \(-1' compare half.pfm quarter.pfm --exposure=-1
+expect middle_grey 0 'exposure × 0\.36 ' compare half.pfm quarter.pfm --exposure auto
+expect linear_json 0 '"aligned_scale": 2\.0' compare half.pfm quarter.pfm --align --json -
+expect levels_json 0 '"linear": null' compare a.ppm b.ppm --json -
+told=$("${run[@]}" compare half.pfm quarter.pfm --fail-above 0 2>&1 >/dev/null)
+check linear_beyond grep -q 'more than --fail-above 0' <<<"$told"
+"${run[@]}" render cube --size 32x24 -o cube.pfm >/dev/null
+"${run[@]}" render cube --size 32x24 -o cube.ppm >/dev/null
+expect rendered 0 'PSNR infinite.* 0 of 768 pixels' compare cube.pfm cube.pfm --map linear.png
+check linear_map test "$(head -c 24 linear.png | tail -c 8 | od -An -tx1 | tr -d ' \n')" = 0000002000000018
+expect displayed_is_the_light 0 'PSNR infinite' compare cube.ppm cube.pfm
+expect light_is_the_displayed 0 'PSNR infinite' compare cube.pfm cube.ppm
+expect exposure_is_found 0 'aligned: exposure × (1 |1\.00|0\.99)' compare cube.ppm cube.pfm --align
+"${run[@]}" reference cube --size 32x24 --samples 16 -o reference.pfm >/dev/null
+expect reference 0 'linear light: RMSE 0\.' compare reference.pfm cube.pfm --align
+expect reference_beside_levels 0 'as displayed' compare reference.pfm cube.ppm
+if "${run[@]}" render cube --size 32x24 -o cube.exr >/dev/null 2>&1; then
+  expect exr 0 'PSNR infinite.* 0 of 768 pixels' compare cube.pfm cube.exr
+  head -c 500 cube.exr >cut.exr
+  expect truncated_exr 1 'cut.exr (is truncated|cannot be decoded)' compare cube.pfm cut.exr
+else
+  printf '\x76\x2f\x31\x01 more' >strange.exr
+  expect exr_without_library 1 'strange.exr is an OpenEXR picture, which this build cannot read' compare half.pfm strange.exr
+fi
+head -c 100 half.pfm >cut.pfm
+printf 'PF 70000 70000 1 more' >huge.pfm
+printf 'Pf 1 1 1 \x7f\xc0\0\0' >nan.pfm
+printf 'PF 1 1 1 \0\0\0\0\0\0\0\0\0\0\0\0' >black.pfm
+printf 'PF 1 1 1 \x3f\0\0\0\x3f\0\0\0\x3f\0\0\0' >lit.pfm
+expect truncated_pfm 1 'cut.pfm is truncated: write it again' compare half.pfm cut.pfm
+expect huge_pfm 1 'huge.pfm is not a PFM of 1 to 16777216 pixels' compare huge.pfm half.pfm
+expect nan_pfm 1 'nan.pfm has a value that is NaN, in column 0 of row 0' compare black.pfm nan.pfm
+expect align_black 1 '--align finds no scale' compare lit.pfm black.pfm --align
+expect align_levels 1 '--align changes linear light' compare a.ppm b.ppm --align
+expect exposure_of_levels 1 '--exposure changes linear light' compare a.ppm b.ppm --exposure 1
+expect exposure_twice 1 'drop --exposure' compare a.ppm half.pfm --align --exposure 1
+expect strange_exposure 1 '--exposure is' compare half.pfm quarter.pfm --exposure bright
+expect sizes_of_light 1 'lit.pfm has 1×1 pixels, half.pfm 4×3' compare lit.pfm half.pfm
+
 # Goal: what cannot be compared is refused in one line, before anything is written.
 pixels 33 | sed 's/^4 3$/3 4/' >turned.ppm
 head -c 40 a.ppm >cut.ppm

@@ -116,6 +116,38 @@ TEST_CASE("hard_68_polygons_have_the_area_of_the_even_odd_rule") {
   }
 }
 
+// Goal: the area is right where a fan, which renderers make of polygons, is wrong. Method: these polygons from every
+// corner, both ways.
+TEST_CASE("hard_68_polygons_by_an_ordinary_fan") {
+  struct Shape {
+    std::vector<Vec3> corners;
+    double area;
+  };
+  std::vector<Shape> shapes;
+  for (const NamedLoop& named : loops())
+    for (std::size_t first = 0; named.loop.size() < 100 && first < named.loop.size(); ++first)
+      for (bool reversed : {false, true})
+        shapes.push_back({flat(rotated(named.loop, first, reversed)), even_odd_area(named.loop)});
+  auto by_ours = [](const Shape& shape) {
+    PolygonTriangles made;
+    return triangulate_polygon(shape.corners, &made) ? area_of(shape.corners, made) : -1;
+  };
+  auto by_fan = [](const Shape& shape) {
+    PolygonTriangles fan;
+    for (std::uint32_t i = 2; i < shape.corners.size(); ++i)
+      for (std::uint32_t corner : {0u, i - 1, i}) fan.corners.push_back(corner);
+    return area_of(shape.corners, fan);
+  };
+  auto is_wrong = [](const Shape& shape, double area) {
+    return !(std::fabs(area - shape.area) <= 1e-6 * (1 + shape.area));
+  };
+  const Answers ours = time_answers(shapes, by_ours, is_wrong), fan = time_answers(shapes, by_fan, is_wrong);
+  CHECK(ours.wrong == 0);
+  CHECK(fan.wrong > 0);
+  count_beside("fan from the first corner", "polygon", shapes.size(), fan, ours);
+  count_hard(shapes.size(), ours.wrong, "the even-odd area within 1e-6");
+}
+
 // Goal: neighbours of a polygon leave no gap: the sides of its triangles that are not shared are its own, also where
 // corners lie on a line. Method: sides of odd number, of polygons whose sides do not cross.
 TEST_CASE("hard_68_triangles_of_polygons_share_their_sides") {

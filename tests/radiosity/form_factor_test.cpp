@@ -86,7 +86,7 @@ TEST_CASE("hard_47_patches_inside_a_sphere") {
     Vec3d s = normalize(cross(n, Vec3d{.3, .5, -.7})), t = cross(n, s);
     Polygon p;
     for (int i = 0; i < 3; ++i)  // counter-clockwise seen from the centre
-      p.push_back(normalize(n + s * (.01 * det_cos(-2.1 * i)) + t * (.01 * det_sin(-2.1 * i))) * 2.0);
+      p.push_back(normalize(n + s * (.005 * det_cos(-2.1 * i)) + t * (.005 * det_sin(-2.1 * i))) * 2.0);
     return p;
   };
   std::uint64_t wrong = 0;

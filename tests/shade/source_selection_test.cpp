@@ -5,6 +5,7 @@
 
 #include "support/effort.h"
 #include "support/generated_scene.h"
+#include "support/hard_case.h"
 #include "support/scaled_scene.h"
 
 using namespace pocketray;
@@ -175,7 +176,8 @@ TEST_CASE("source_selection_is_independent_of_scale") {
 
 // Goal: the cost grows slower than the number of lights. Method: 25 to 1,600 equal lights, seeded, over a ground that
 // grows with their number, as that of a town does; shadow rays, which are counted.
-TEST_CASE("source_selection_grows_slower_than_the_number_of_lights") {
+TEST_CASE("hard_75_source_selection_grows_slower_than_the_number_of_lights") {
+  count_assertions("shadow rays below proportion, error within tolerance");
   const std::uint32_t features = bit(Feature::ambient);
   std::vector<std::uint64_t> rays;
   for (std::uint32_t count : {25u, 100u, 400u, 1600u}) {

@@ -2,6 +2,7 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -11,9 +12,15 @@
 namespace pocketray {
 namespace {
 
+struct Beside {
+  std::string method, answer;
+  std::uint64_t inputs = 0;
+  Answers ordinary, ours;
+};
 struct HardCase {
   std::string name, bound;
   std::uint64_t inputs = 0, wrong = 0;
+  std::vector<Beside> beside;
 };
 HardCase running;
 std::atomic<std::int64_t> progress_due{0};  // milliseconds of the steady clock
@@ -37,9 +44,15 @@ struct GateListener : doctest::IReporter {
     std::uint64_t wrong = running.wrong > 0 ? running.wrong : failed;
     std::FILE* file = std::fopen(line_file(), "a");
     if (!file) std::perror(line_file()), std::abort();
-    std::fprintf(file, "%s\t%llu\t%llu\t%s\t%.1f\n", running.name.c_str(),
+    std::fprintf(file, "%s\t%llu\t%llu\t%s\t%.1f\t", running.name.c_str(),
                  static_cast<unsigned long long>(running.inputs), static_cast<unsigned long long>(wrong),
                  running.bound.c_str(), stats.seconds);
+    for (const Beside& b : running.beside)
+      std::fprintf(file, "%s%s|%s|%llu|%llu|%.9g|%llu|%.9g", &b == &running.beside[0] ? "" : ";", b.method.c_str(),
+                   b.answer.c_str(), static_cast<unsigned long long>(b.inputs),
+                   static_cast<unsigned long long>(b.ordinary.wrong), b.ordinary.seconds,
+                   static_cast<unsigned long long>(b.ours.wrong), b.ours.seconds);
+    std::fprintf(file, "\n");
     std::fclose(file);
     std::fprintf(stderr, "\r\033[K");
   }
@@ -70,6 +83,16 @@ void count_hard(std::uint64_t inputs, std::uint64_t wrong, const char* bound) {
 }
 
 void count_assertions(const char* bound) { running.bound = bound; }
+
+void count_beside(const char* method, const char* answer, std::uint64_t inputs, const Answers& ordinary,
+                  const Answers& ours) {
+  auto known = std::find_if(running.beside.begin(), running.beside.end(),
+                            [&](const Beside& b) { return b.method == method && b.answer == answer; });
+  if (known == running.beside.end()) known = running.beside.insert(known, {method, answer, 0, {}, {}});
+  known->inputs += inputs;
+  known->ordinary.wrong += ordinary.wrong, known->ordinary.seconds += ordinary.seconds;
+  known->ours.wrong += ours.wrong, known->ours.seconds += ours.seconds;
+}
 
 void show_gate_progress(std::uint64_t done, std::uint64_t count) {
   if (!whole_gate()) return;

@@ -1,11 +1,13 @@
 // The hard cases (rows of HARDCASES.md) as one gate. A test named hard_NN_… or differential_… counts its inputs and the
 // wrong results. The suite runs a share of the gate. With POCKETRAY_HARDCASES=FILE in the environment, which `make
 // hardcases` sets, all of it runs, with progress on stderr, and each such test appends a line to FILE:
-//   case TAB inputs TAB wrong TAB bound TAB seconds
+//   case TAB inputs TAB wrong TAB bound TAB seconds TAB ordinary methods
+// in which an ordinary method is "method|answer|inputs|wrong|seconds|our wrong|our seconds", with ; between methods.
 #pragma once
 #include <algorithm>
 #include <atomic>
 #include <cstdint>
+#include <ctime>
 #include <thread>
 #include <vector>
 
@@ -25,6 +27,28 @@ inline int gate_share(int usual, int whole) { return effort(whole_gate() ? whole
 void count_hard(std::uint64_t inputs, std::uint64_t wrong, const char* bound);
 // For a test that asserts each of its inputs: its assertions are counted.
 void count_assertions(const char* bound);
+
+// Answers to some inputs by one method: how many were wrong, and the CPU time that all took.
+struct Answers {
+  std::uint64_t wrong = 0;
+  double seconds = 0;
+};
+// Counts inputs of the running test that an ordinary method answered beside ours; calls for one method accumulate.
+// `answer` describes a single answer: "ray against 320 triangles".
+void count_beside(const char* method, const char* answer, std::uint64_t inputs, const Answers& ordinary,
+                  const Answers& ours);
+
+// Answers all inputs by find(input), timed, then judges with is_wrong(input, answer).
+template <class Input, class Find, class IsWrong>
+Answers time_answers(const std::vector<Input>& inputs, Find find, IsWrong is_wrong) {
+  std::vector<decltype(find(inputs[0]))> answers(inputs.size());
+  Answers result;
+  const std::clock_t begin = std::clock();  // of the process: tests that call this have one thread
+  for (std::size_t i = 0; i < inputs.size(); ++i) answers[i] = find(inputs[i]);
+  result.seconds = static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
+  for (std::size_t i = 0; i < inputs.size(); ++i) result.wrong += is_wrong(inputs[i], answers[i]) ? 1 : 0;
+  return result;
+}
 
 // Reports the progress of a test of the full gate on stderr, at most twice a second. Thread-safe.
 void show_gate_progress(std::uint64_t done, std::uint64_t count);

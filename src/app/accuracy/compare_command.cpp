@@ -11,29 +11,48 @@
 #include "desktop/accuracy/strip.h"
 #include "session/output.h"
 #include "session/report.h"
+#include "session/scene_options.h"
 
 namespace pocketray {
 namespace {
 
 struct CompareOptions {
-  std::string reference, test, map, json;
+  std::string reference, test, map, json, exposure;
+  bool align = false;
   double fail_above = 1;  // no ꟻLIP exceeds this
   double pixels_per_degree = kHandheldPixelsPerDegree;
 };
 
-Status read_pictures(const CompareOptions& o, Levels* reference, Levels* test) {
-  if (!o.map.empty() && !has_suffix(o.map.c_str(), ".png"))
-    return failure("-o is '%.300s': the name must end in .png", o.map.c_str());
-  RETURN_IF_ERROR(check_outputs({{"A", o.reference}, {"B", o.test}}, {{"-o", o.map}, {"--json", o.json}}));
-  RETURN_IF_ERROR(read_picture(o.reference, reference));
-  RETURN_IF_ERROR(read_picture(o.test, test));
-  if (reference->width == test->width && reference->height == test->height) return success();
-  return failure("%.180s has %u×%u pixels, %.180s %u×%u: compare pictures of one size", o.reference.c_str(),
-                 reference->width, reference->height, o.test.c_str(), test->width, test->height);
+Status read_development(const CompareOptions& o, const AnyPicture& reference, const AnyPicture& test,
+                        Development* development) {
+  ExposureChoice choice;
+  float factor;
+  RETURN_IF_ERROR(parse_exposure(o.exposure, &choice, &factor));
+  const bool are_levels = !reference.is_linear && !test.is_linear, are_linear = reference.is_linear && test.is_linear;
+  if (are_levels && (o.align || !o.exposure.empty()))
+    return failure("%s changes linear light, and neither picture has any: compare a .pfm or .exr, or drop it",
+                   o.align ? "--align" : "--exposure");
+  if (!are_linear && o.align && !o.exposure.empty())
+    return failure("--align finds the exposure of the linear picture: drop --exposure");
+  development->measured = choice == ExposureChoice::measured;
+  development->exposure = static_cast<double>(factor);
+  development->aligned = o.align;
+  return success();
 }
 
-Status write_map(const std::string& path, const Levels& reference, const Comparison& c) {
-  Levels map = {reference.width, reference.height, {}};
+Status read_pictures(const CompareOptions& o, AnyPicture* reference, AnyPicture* test) {
+  if (!o.map.empty() && !has_suffix(o.map.c_str(), ".png"))
+    return failure("--map is '%.300s': the name must end in .png", o.map.c_str());
+  RETURN_IF_ERROR(check_outputs({{"A", o.reference}, {"B", o.test}}, {{"--map", o.map}, {"--json", o.json}}));
+  RETURN_IF_ERROR(read_picture(o.reference, reference));
+  RETURN_IF_ERROR(read_picture(o.test, test));
+  if (reference->width() == test->width() && reference->height() == test->height()) return success();
+  return failure("%.180s has %u×%u pixels, %.180s %u×%u: compare pictures of one size", o.reference.c_str(),
+                 reference->width(), reference->height(), o.test.c_str(), test->width(), test->height());
+}
+
+Status write_map(const std::string& path, const AnyPicture& reference, const Comparison& c) {
+  Levels map = {reference.width(), reference.height(), {}};
   for (float error : c.flip_map)
     for (std::uint8_t level : flip_color(error)) map.rgb.push_back(level);
   std::string bytes;
@@ -43,19 +62,38 @@ Status write_map(const std::string& path, const Levels& reference, const Compari
 
 int largest_level_difference(const Comparison& c) { return static_cast<int>(std::lround(255 * c.errors.max)); }
 
-void print_comparison(const Comparison& c) {
+void print_light(const CompareOptions& o, const Comparison& c) {
+  if (c.are_linear && o.align) std::printf("aligned: B × %.6g (%+.3f stops)\n", c.scale, std::log2(c.scale));
+  if (c.are_linear)
+    std::printf("linear light: RMSE %.6g, relative MSE %.6g, bias %+.6g, largest difference %.6g\n", c.light.rmse,
+                c.light.rel_mse, c.light.bias, c.light.max);
+  std::printf("%s × %.6g (%+.3f stops), as displayed:\n", !c.are_linear && o.align ? "aligned: exposure" : "exposure",
+              c.exposure, std::log2(c.exposure));
+}
+
+void print_comparison(const CompareOptions& o, const Comparison& c) {
   char psnr[40];
   std::snprintf(psnr, sizeof psnr, std::isinf(c.errors.psnr) ? "infinite" : "%.2f dB", c.errors.psnr);
+  if (c.has_exposure) print_light(o, c);
   std::printf("ꟻLIP %.6f (largest %.6f), RMSE %.6f, PSNR %s, largest difference %d of 255; %s of %s pixels differ\n",
               c.flip, c.flip_max, c.errors.rmse, psnr, largest_level_difference(c), grouped(c.differing_count).c_str(),
               grouped(c.flip_map.size()).c_str());
 }
 
-Json to_json(const CompareOptions& o, const Levels& reference, const Comparison& c) {
+Json light_json(const CompareOptions& o, const Comparison& c) {
+  if (!c.are_linear) return Json();
+  return {{"rmse", c.light.rmse},
+          {"rel_mse", c.light.rel_mse},
+          {"bias", c.light.bias},
+          {"largest_difference", c.light.max},
+          {"aligned_scale", o.align ? Json(c.scale) : Json()}};
+}
+
+Json to_json(const CompareOptions& o, const AnyPicture& reference, const Comparison& c) {
   return {{"reference", o.reference},
           {"test", o.test},
-          {"width", reference.width},
-          {"height", reference.height},
+          {"width", reference.width()},
+          {"height", reference.height()},
           {"pixels_per_degree", o.pixels_per_degree},
           {"flip", c.flip},
           {"flip_max", c.flip_max},
@@ -63,14 +101,19 @@ Json to_json(const CompareOptions& o, const Levels& reference, const Comparison&
           {"psnr", std::isinf(c.errors.psnr) ? Json() : Json(c.errors.psnr)},
           {"largest_level_difference", largest_level_difference(c)},
           {"differing_pixels", c.differing_count},
+          {"exposure", c.has_exposure ? Json(c.exposure) : Json()},
+          {"linear", light_json(o, c)},
           {"map", o.map.empty() ? Json() : Json(o.map)}};
 }
 
 Status run(const CompareOptions& o) {
-  Levels reference, test;
+  AnyPicture reference, test;
+  Development development;
+  Comparison c;
   RETURN_IF_ERROR(read_pictures(o, &reference, &test));
-  Comparison c = compare_pictures(reference, test, o.pixels_per_degree);
-  if (o.json != "-") print_comparison(c);
+  RETURN_IF_ERROR(read_development(o, reference, test, &development));
+  RETURN_IF_ERROR(compare_pictures(reference, test, development, o.pixels_per_degree, &c));
+  if (o.json != "-") print_comparison(o, c);
   if (!o.map.empty()) RETURN_IF_ERROR(write_map(o.map, reference, c));
   if (!o.json.empty()) RETURN_IF_ERROR(write_json(o.json, to_json(o, reference, c)));
   if (c.flip > o.fail_above)
@@ -87,14 +130,28 @@ void add_compare_command(Command program, int* exit_status) {
   command.footer(
       "Prints the mean ꟻLIP (Andersson et al. 2020), 0 for equal pictures and at most 1; RMSE and PSNR of the values "
       "as\n"
-      "stored, 1 being white; the largest difference of a channel; and the number of pixels that differ. PSNR is\n"
+      "displayed, 1 being white; the largest difference of a channel; and the number of pixels that differ. PSNR is\n"
       "infinite for equal pictures (JSON: null). Alpha is ignored, and 16-bit PNGs are compared as 8 bits. The map\n"
       "shows ꟻLIP from black (0) through violet and orange to light yellow (1), in the perceptually even colours of\n"
       "magma.\n"
-      "Try:  pocketray compare expected.png out.png -o map.png --fail-above 0.01");
-  command.add_option("A", o->reference, "the reference: .png, .jpg or .ppm").required();
+      "Two pictures of linear light, .pfm or .exr, are also compared in that: RMSE, relative MSE and bias, above 0 if "
+      "B\n"
+      "is too bright. Beside .png, .jpg or .ppm, linear light is first exposed: --align finds the\n"
+      "exposure of a picture by `render`.\n"
+      "Try:  pocketray compare expected.png out.png --map map.png --fail-above 0.01\n"
+      "      pocketray compare reference.pfm out.exr --align");
+  command.add_option("A", o->reference, "the reference: .png, .jpg, .ppm, .pfm or .exr").required();
   command.add_option("B", o->test, "the picture to judge, of the same size").required();
-  command.add_option("-o,--output", o->map, "also write the ꟻLIP map, .png");
+  command.add_option("-o,--map,--output", o->map, "also write the ꟻLIP map, .png");
+  command
+      .add_option(
+          "--exposure", o->exposure,
+          "stops to expose linear light by; auto: the geometric mean of A (or B if only that is linear) becomes "
+          "middle grey")
+      .default_str("0, radiance 1 is white");
+  command.add_flag("--align", o->align,
+                   "scale the light of B to be as close to A as possible, or find the exposure of the one linear "
+                   "picture; print the factor");
   command.add_option("--fail-above", o->fail_above, "exit with status 1 if the mean ꟻLIP exceeds this")
       .range(0.0, 1.0)
       .default_str("never");

@@ -10,28 +10,14 @@
 
 #include "desktop/accuracy/flip.h"
 #include "desktop/accuracy/strip.h"
-#include "platform/file.h"
+#include "support/picture_folder.h"
 
 using namespace pocketray;
 
 namespace {
 
-// A folder for the test's files, removed at the end.
-struct PictureFolder {
-  char path[256] = {};
-  PictureFolder() {
-    platform::FileError error;
-    REQUIRE_MESSAGE(platform::make_temporary_folder(path, sizeof path, &error), error.text);
-  }
-  ~PictureFolder() { platform::remove_folder(path); }
-};
-
 Levels constant(std::uint32_t width, std::uint32_t height, std::uint8_t level) {
   return {width, height, std::vector<std::uint8_t>(std::size_t{3} * width * height, level)};
-}
-
-void save(const std::string& path, const std::string& bytes) {
-  std::ofstream(path, std::ios::binary).write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
 }
 
 }  // namespace
@@ -39,7 +25,7 @@ void save(const std::string& path, const std::string& bytes) {
 // Goal: RMSE, PSNR and the largest difference of two constant pictures are those of their levels; equal pictures have
 // no error. Method: levels 51 and 102 differ by 0.2; one pixel of 12 differs in one channel by 51.
 TEST_CASE("compare_equals_the_closed_form") {
-  Comparison c = compare_pictures(constant(4, 3, 51), constant(4, 3, 102), kHandheldPixelsPerDegree);
+  Comparison c = compare_levels(constant(4, 3, 51), constant(4, 3, 102), kHandheldPixelsPerDegree);
   CHECK(c.errors.rmse == doctest::Approx(0.2).epsilon(1e-12));
   CHECK(c.errors.psnr == doctest::Approx(20 * std::log10(5.0)).epsilon(1e-12));
   CHECK(c.errors.max == doctest::Approx(0.2).epsilon(1e-12));
@@ -48,11 +34,11 @@ TEST_CASE("compare_equals_the_closed_form") {
   CHECK((c.flip > 0 && c.flip <= c.flip_max));
   Levels spot = constant(4, 3, 51);
   spot.rgb[3 * 7 + 2] = 102;
-  c = compare_pictures(constant(4, 3, 51), spot, kHandheldPixelsPerDegree);
+  c = compare_levels(constant(4, 3, 51), spot, kHandheldPixelsPerDegree);
   CHECK(c.differing_count == 1);
   CHECK(c.errors.rmse == doctest::Approx(0.2 / 6).epsilon(1e-12));
   CHECK(c.flip_max > c.flip);
-  c = compare_pictures(spot, spot, kHandheldPixelsPerDegree);
+  c = compare_levels(spot, spot, kHandheldPixelsPerDegree);
   CHECK(c.flip == 0);
   CHECK(c.flip_max == 0);
   CHECK(c.errors.rmse == 0);
@@ -75,19 +61,19 @@ TEST_CASE("compare_reads_whole_pictures_only") {
 #endif
   const std::string path = std::string(folder.path) + "/picture";
   for (const std::string& file : files) {
-    Levels read;
+    AnyPicture read;
     save(path, file);
     Status status = read_picture(path, &read);
     REQUIRE_MESSAGE(status.ok, status.message);
-    CHECK(read.width == 5);
-    CHECK(read.height == 3);
-    CHECK(read.rgb == picture.rgb);
+    CHECK(read.width() == 5);
+    CHECK(read.height() == 3);
+    CHECK(read.levels.rgb == picture.rgb);
     for (std::size_t count = 0; count < file.size(); ++count) {
       save(path, file.substr(0, count));
       status = read_picture(path, &read);
       CAPTURE(count);
       if (file == png && count + 12 >= file.size()) {
-        CHECK((!status.ok || read.rgb == picture.rgb));
+        CHECK((!status.ok || read.levels.rgb == picture.rgb));
       } else {
         CHECK(!status.ok);
         CHECK(std::string(status.message).find(path) != std::string::npos);
@@ -96,7 +82,7 @@ TEST_CASE("compare_reads_whole_pictures_only") {
   }
   for (const char* header : {"P6 0 3 255 ", "P6 99999999999999999999 1 255 ", "P6 4097 4096 255 ", "P6 1 1 65535 ",
                              "P6 -1 1 255 ", "P3 1 1 255 0 0 0", "GIF89a"}) {
-    Levels read;
+    AnyPicture read;
     save(path, header + std::string(60, ' '));
     CAPTURE(header);
     CHECK(!read_picture(path, &read).ok);
@@ -113,7 +99,7 @@ TEST_CASE("compare_equals_the_authors_of_flip") {
     MESSAGE("skipped: no " << folder << "expected.csv");
     return;
   }
-  Levels reference, test;
+  AnyPicture reference, test;
   REQUIRE(read_picture(folder + "ref.png", &reference).ok);
   std::getline(table, line);
   int count = 0;
@@ -125,7 +111,7 @@ TEST_CASE("compare_equals_the_authors_of_flip") {
     cells >> name >> pixels_per_degree >> mean >> median >> max;
     REQUIRE(!cells.fail());
     REQUIRE(read_picture(folder + name, &test).ok);
-    Comparison c = compare_pictures(reference, test, pixels_per_degree);
+    Comparison c = compare_levels(reference.levels, test.levels, pixels_per_degree);
     CAPTURE(line);
     CHECK(std::fabs(c.flip - mean) <= 1e-4);
     CHECK(std::fabs(c.flip_max - max) <= 1e-3);

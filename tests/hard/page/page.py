@@ -1,0 +1,227 @@
+#!/usr/bin/env python3
+"""page.py LINES PAGE: makes the page of the hard cases from the lines that their tests wrote (support/hard_case.h).
+
+Every figure is measured; rows.py has only titles and pictures. The page stands alone: no scripts, no other files.
+"""
+import html
+import os
+import re
+import sys
+from dataclasses import dataclass, field
+
+from pictures import draw
+from rows import ROWS, SECTIONS
+
+STYLE = """
+:root { color-scheme: light dark; --ink: #1b1d22; --soft: #62666f; --paper: #ffffff; --card: #f4f5f7; --line: #dcdfe4;
+  --mark: #0063a6; --wrong: #b3261e; --right: #1a7f37; }
+@media (prefers-color-scheme: dark) { :root { --ink: #e9eaed; --soft: #a2a7b1; --paper: #15171b; --card: #1e2126;
+  --line: #363a42; --mark: #6cb8f0; --wrong: #ff8a80; --right: #6fd08c; } }
+* { box-sizing: border-box; }
+body { margin: 0 auto; padding: 1rem; max-width: 76rem; background: var(--paper); color: var(--ink);
+  font: 1rem/1.5 system-ui, sans-serif; }
+h1 { font-size: 1.7rem; line-height: 1.2; margin: 0 0 .4rem; }
+h2 { font-size: 1.25rem; margin: 0; padding-top: 1.6rem; }
+p { margin: .4rem 0 .8rem; max-width: 46rem; }
+small, .soft { color: var(--soft); font-size: .85em; }
+.answer { background: var(--card); border-left: 4px solid var(--mark); border-radius: 4px; padding: .7rem 1rem;
+  max-width: none; font-size: 1.1rem; }
+table { border-collapse: collapse; width: 100%; font-variant-numeric: tabular-nums; font-size: .92rem; }
+th, td { padding: .5rem .8rem .5rem 0; text-align: left; vertical-align: top; border-bottom: 1px solid var(--line); }
+thead th { font-weight: 500; color: var(--soft); font-size: .85rem; vertical-align: bottom; }
+th[scope=rowgroup] { border: 0; padding: 0; }
+td.number { color: var(--soft); width: 2.2rem; }
+td.case { width: 19rem; }
+td.ours { width: 17rem; }
+td.case b { font-weight: 600; display: block; line-height: 1.3; }
+.picture { display: block; width: 7.5rem; height: 4.5rem; background: var(--card); border-radius: 4px;
+  font: 12px system-ui, sans-serif; }
+.right { color: var(--right); } .wrong { color: var(--wrong); }
+.method { display: grid; grid-template-columns: 1fr auto; gap: 0 .8rem; margin-bottom: .5rem; }
+.method .bar { grid-column: 1 / 3; height: 4px; border-radius: 2px; background: var(--line); overflow: hidden; }
+.method .bar i { display: block; height: 100%; background: var(--wrong); }
+.method span:last-child { font-size: .85em; text-align: right; }
+details { font-size: .85rem; color: var(--soft); } summary { cursor: pointer; }
+details div { overflow-wrap: anywhere; }
+@media (max-width: 48rem) {
+  thead { display: none; }
+  table, tbody, tr, td, th { display: block; width: auto !important; }
+  td { border: 0; padding: .15rem 0; }
+  tr { border-bottom: 1px solid var(--line); padding: .7rem 0; position: relative; }
+  td.number { position: absolute; right: 0; top: .7rem; }
+  td[data-name]::before { content: attr(data-name); display: block; color: var(--soft); font-size: .8rem; }
+  td:empty { display: none; }
+  td.case { padding-right: 2rem; }
+}
+"""
+
+
+NOTES = """<p class="soft" style="padding-top: 1rem">Möller–Trumbore: the two-sided test of 1997 with an epsilon of 1e-8. Woop et al.: the
+watertight test of 2013 as published; contracted: compiled with FMA, as compilers do by default where the CPU has it. Slabs, not
+padded: the box test of Williams et al. 2005.</p>
+"""
+
+
+@dataclass
+class Beside:
+    method: str
+    answer: str
+    inputs: int
+    wrong: int
+    seconds: float
+    our_wrong: int
+    our_seconds: float
+
+
+@dataclass
+class Case:
+    name: str
+    inputs: int
+    wrong: int
+    bound: str
+    seconds: float
+    beside: list = field(default_factory=list)
+
+
+def read_case(line):
+    name, inputs, wrong, bound, seconds, *rest = line.rstrip("\n").split("\t")
+    case = Case(name, int(inputs), int(wrong), bound, float(seconds))
+    for text in rest[0].split(";") if rest and rest[0] else []:
+        method, answer, count, bad, took, our_bad, our_took = text.split("|")
+        case.beside.append(Beside(method, answer, int(count), int(bad), float(took), int(our_bad), float(our_took)))
+    return case
+
+
+def row_of(case):
+    found = re.match(r"hard_(\d+)_", case.name)
+    return int(found[1]) if found else None
+
+
+def grouped(count):
+    return f"{count:,}".replace(",", "\u202f")
+
+
+def share(wrong, inputs):
+    percent = 100 * wrong / inputs
+    return "0" if wrong == 0 else f"{percent:.2g} %" if percent < 10 else f"{percent:.0f} %"
+
+
+def nanoseconds(seconds, inputs):
+    ns = 1e9 * seconds / inputs
+    if ns < 10000:
+        return f"{ns:.1f} ns" if ns < 100 else f"{grouped(round(ns))} ns"
+    return f"{ns / 1000:.1f} µs" if ns < 100000 else f"{grouped(round(ns / 1000))} µs"
+
+
+def count_text(wrong, inputs):
+    kind = "wrong" if wrong else "right"
+    return f'<span class="{kind}"><b>{grouped(wrong)}</b> wrong</span> of {grouped(inputs)}'
+
+
+def methods_html(cases):
+    text = ""
+    for b in (b for case in cases for b in case.beside):
+        width = 0 if b.wrong == 0 else max(1.0, 100 * b.wrong / b.inputs)
+        text += (f'<div class="method"><span>{html.escape(b.method)}</span><span>{share(b.wrong, b.inputs)} wrong</span>'
+                 f'<span class="bar"><i style="width:{width:.1f}%"></i></span>'
+                 f"<small>{grouped(b.wrong)} of {grouped(b.inputs)}</small>"
+                 f"<span>{nanoseconds(b.seconds, b.inputs)}</span></div>")
+    return text
+
+
+def our_times_html(cases):
+    text, seen = "", set()
+    for case in cases:
+        for b in case.beside:
+            if (case.name, b.answer) not in seen:
+                text += (f"<div>{nanoseconds(b.our_seconds, b.inputs)} <small>for a {html.escape(b.answer)}, "
+                         f"{grouped(b.our_wrong)} wrong of {grouped(b.inputs)}</small></div>")
+            seen.add((case.name, b.answer))
+    return text
+
+
+def tests_html(cases):
+    lines = "".join(f"<div>{html.escape(c.name)}: {grouped(c.wrong)} of {grouped(c.inputs)}, {html.escape(c.bound)}, "
+                    f"{c.seconds:.1f} s</div>" for c in cases)
+    return f"<details><summary>{len(cases)} test{'s' if len(cases) > 1 else ''}</summary>{lines}</details>"
+
+
+def row_html(number, title, answer, picture, cases):
+    inputs, wrong = sum(c.inputs for c in cases), sum(c.wrong for c in cases)
+    methods = methods_html(cases)
+    name = ' data-name="ordinary methods"' if methods else ""
+    return (f'<tr><td class="number">{number}</td>'
+            f'<td class="case"><b>{html.escape(title)}</b><span class="soft">{html.escape(answer)}</span></td>'
+            f"<td>{picture}</td>"
+            f'<td class="ours" data-name="ours">{count_text(wrong, inputs)}{our_times_html(cases)}{tests_html(cases)}</td>'
+            f"<td{name}>{methods}</td></tr>\n")
+
+
+def machine():
+    try:
+        with open("/proc/cpuinfo", encoding="utf-8") as file:
+            names = [line.split(":", 1)[1].strip() for line in file if line.startswith("model name")]
+    except OSError:
+        names = []
+    return (html.escape(names[0]) + ", " if names else "") + f"{os.cpu_count()} threads"
+
+
+def head_html(cases):
+    inputs, wrong = sum(c.inputs for c in cases), sum(c.wrong for c in cases)
+    beside = [b for c in cases for b in c.beside]
+    rows = {row_of(c) for c in cases} - {None}
+    text = ("<h1>Hard cases</h1>\n<p>Inputs that break ordinary ray tracers: what they are, how often the program is wrong, "
+            "and what ordinary methods make of equal inputs.</p>\n"
+            f'<p class="answer"><b class="{"wrong" if wrong else "right"}">{grouped(wrong)} wrong answers</b> to '
+            f"{grouped(inputs)} inputs of {len(cases)} tests in {len(rows)} rows")
+    if beside:
+        text += (f"; ordinary methods gave <b class=\"wrong\">{grouped(sum(b.wrong for b in beside))}</b> to "
+                 f"{grouped(sum(b.inputs for b in beside))}")
+    return text + (f'.</p>\n<p class="soft">{machine()}; {sum(c.seconds for c in cases):.0f} s in all. Times are CPU times of '
+                   "one thread and hold only beside each other. Inputs are aimed at the weak spots: shares of wrong answers say nothing "
+                   "about ordinary scenes.</p>\n")
+
+
+def page_html(cases):
+    text = ('<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
+            '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
+            f"<title>Hard cases</title>\n<style>{STYLE}</style>\n</head>\n<body>\n" + head_html(cases) +
+            "<table>\n<thead><tr><th></th><th>case, right answer</th><th></th><th>ours</th><th>ordinary methods</th></tr></thead>\n")
+    by_row = {}
+    for case in cases:
+        by_row.setdefault(row_of(case), []).append(case)
+    bounds = [first for first, _ in SECTIONS[1:]] + [1000]
+    for (first, name), end in zip(SECTIONS, bounds):
+        numbers = sorted(n for n in by_row if n is not None and first <= n < end)
+        if not numbers:
+            continue
+        text += f'<tbody><tr><th colspan="5" scope="rowgroup"><h2>{html.escape(name)}</h2></th></tr>\n'
+        for n in numbers:
+            title, answer, picture = ROWS.get(n, (f"Row {n}", "", ""))
+            text += row_html(n, title, answer, draw(picture, title) if picture else "", by_row[n])
+        text += "</tbody>\n"
+    if None in by_row:
+        text += '<tbody><tr><th colspan="5" scope="rowgroup"><h2>Every method against another</h2></th></tr>\n'
+        for case in by_row[None]:
+            title = re.sub(r"^(hard|differential)_", "", case.name).replace("_", " ")
+            text += row_html("", title[0].upper() + title[1:], case.bound, "", [case])
+        text += "</tbody>\n"
+    return text + "</table>\n" + NOTES + "</body>\n</html>\n"
+
+
+def main():
+    if len(sys.argv) != 3:
+        print(__doc__, file=sys.stderr)
+        return 2
+    with open(sys.argv[1], encoding="utf-8") as file:
+        cases = [read_case(line) for line in file]
+    if not cases:
+        print("page.py: no hard case was run", file=sys.stderr)
+        return 1
+    with open(sys.argv[2], "w", encoding="utf-8") as file:
+        file.write(page_html(cases))
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
