@@ -56,6 +56,7 @@ struct AlphaRange {
 
 AlphaRange vertex_alpha(const Scene& scene, std::uint32_t material) {
   if (scene.colors.empty()) return {65535, 65535};
+  CHECK_EQ(scene.colors.count, scene.positions.count);
   AlphaRange range = {65535, 0};
   for (const Triangle& t : scene.triangles) {
     if (t.material() != material) continue;
@@ -109,6 +110,7 @@ bool is_flat_along_axis(const Scene& scene, const Triangle& t) {
 }
 
 bool keys_are_equal(const Scene& scene, const Channel& channel, std::uint32_t width) {
+  CHECK_LT(channel.value_begin, scene.key_values.count);
   const float* first = scene.key_values.data + channel.value_begin;
   const bool is_cubic = channel.interpolation == Interpolation::cubic;
   const std::uint32_t stride = is_cubic ? 3 * width : width, middle = is_cubic ? width : 0;
@@ -179,6 +181,7 @@ bool has_one_value(const Scene& scene, const TextureUse& use, std::uint8_t (&val
 }
 
 bool shows_emission(const Scene& scene, std::uint32_t material) {
+  CHECK_LT(material, scene.materials.count);
   const Material& m = scene.materials[material];
   if (is_zero(m.emission)) return false;
   return m.emission_texture.texture == kNone ||
@@ -186,11 +189,13 @@ bool shows_emission(const Scene& scene, std::uint32_t material) {
 }
 
 bool shows_holes(const Scene& scene, std::uint32_t material) {
+  CHECK_LT(material, scene.materials.count);
   const Material& m = scene.materials[material];
   return m.alpha_mode == AlphaMode::mask && !reaches_alpha(scene, material, m.alpha_cutoff);
 }
 
 bool shows_background(const Scene& scene, std::uint32_t material) {
+  CHECK_LT(material, scene.materials.count);
   return scene.materials[material].alpha_mode == AlphaMode::blend && !reaches_alpha(scene, material, 1);
 }
 
@@ -206,6 +211,7 @@ bool shows_occlusion(const Scene& scene, const MaterialMaps& maps) {
 
 bool shows_vertex_normals(const Scene& scene) {
   if (scene.normals.empty()) return false;
+  CHECK_EQ(scene.normals.count, scene.positions.count);
   const bool may_turn = scene.moving_meshes.count > 0;
   if (may_turn && scene.morph_normals.count) return true;
   for (const Vec3& normal : scene.rest_normals)

@@ -45,7 +45,10 @@ bool reads_second(const Scene& scene, std::uint32_t material) {
   return second(maps.metallic_roughness) || second(maps.specular) || second(maps.specular_color);
 }
 
-void note(Census* census, Invisible what, std::uint32_t count) { census->invisible[static_cast<int>(what)] += count; }
+void note(Census* census, Invisible what, std::uint32_t count) {
+  CHECK_LT(static_cast<int>(what), kInvisibleCount);
+  census->invisible[static_cast<int>(what)] += count;
+}
 
 // Returns whether a triangle can be hit: resting ones without area cannot.
 bool has_area(const Scene& scene, const Triangle& t) {
@@ -100,7 +103,7 @@ Census take_census(const Scene& scene, const Settings& settings) {
     const std::uint32_t mask = 1u << t.material() % 32;
     if (!(*word & mask) && has_area(scene, t)) *word |= mask;
   }
-  for (const Reduction& r : scene.reductions) c.invisible[static_cast<int>(r.what)] += r.count;
+  for (const Reduction& r : scene.reductions) note(&c, r.what, r.count);
   for (std::uint32_t i = 0; i < scene.materials.count; ++i) {
     if (!(used[i / 32] >> i % 32 & 1)) continue;
     const Material m =

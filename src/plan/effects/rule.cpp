@@ -40,6 +40,7 @@ EffectDecision with_invisible(const EffectCall& call, EffectDecision decision, I
       "out of range",         "out of range"};
   static_assert(sizeof kTexts / sizeof kTexts[0] == kInvisibleCount, "one for each");
   const int what = static_cast<int>(invisible);
+  CHECK(what < kInvisibleCount && decision.reason[0] != 0);
   const std::uint32_t count = call.census.invisible[what];
   if (decision.on || count == 0) return decision;
   return decided(false, "%s (%u %s)", EffectDecision(decision).reason, count, kTexts[what]);
