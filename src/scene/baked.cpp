@@ -25,7 +25,8 @@ static_assert(sizeof(Node) == 4 + 12 + 16 + 12 + 8 && sizeof(Animation) == 12, "
 static_assert(sizeof(Channel) == 4 * 4 + 2 + 2 && sizeof(Joint) == 4 + 48 && sizeof(Skin) == 8, "no padding");
 static_assert(sizeof(SkinWeight) == 8 + 16 && sizeof(MovingMesh) == 8 * 4 + 48, "no padding");
 static_assert(sizeof(RadiosityInfo) == 12 && sizeof(RadiosityGrid) == 3 * 12 + 3 * 4, "no padding");
-static_assert(sizeof(AnimationLabel) == 64 + 188 + 4 && sizeof(SceneOrigin) == 3 * 8, "no padding");
+static_assert(sizeof(AnimationLabel) == 64 + 188 + 4 && sizeof(SceneOrigin) == 3 * 8 && sizeof(Reduction) == 8,
+              "no padding");
 static_assert(sizeof(DefaultView) == 2 * 4 + 12 + 4, "no padding");
 static_assert(sizeof(EnvironmentInfo) == 3 * 4 + 10 * 12, "no padding");
 static_assert(sizeof(RadiosityNode) == 4 * 12 && sizeof(RadiosityCorners) == 12 && sizeof(RadiositySplit) == 8 &&
@@ -101,8 +102,9 @@ void for_each_array(SceneType& scene, Visit visit) {
   visit("node_visible", scene.node_visible);
   visit("origin", scene.origin);
   visit("radiosity_cuts", scene.radiosity_cuts);
+  visit("reductions", scene.reductions);
 }
-constexpr std::uint32_t kArrayCount = 44;
+constexpr std::uint32_t kArrayCount = 45;
 constexpr std::uint32_t kSectionCount = 1 + kArrayCount;  // kind 0 is SceneInfo
 
 constexpr std::uint64_t aligned(std::uint64_t offset) {
@@ -120,6 +122,7 @@ constexpr std::uint32_t section_count_of(std::uint32_t version) {
          : version < 12 ? 40
          : version < 13 ? 41
          : version < 14 ? 44
+         : version < 15 ? 45
                         : kSectionCount;
 }
 

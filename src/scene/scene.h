@@ -273,6 +273,36 @@ struct DefaultView {
 };
 constexpr std::uint32_t kDefaultViewSides = 4;
 
+// Contents that no picture of a scene shows (invisible.h).
+enum class Invisible : std::uint32_t {
+  black_emission,      // materials whose emission texture is black
+  opaque_blend,        // materials that blend with alpha 1
+  mask_without_holes,  // materials whose alpha is never below the cut-off
+  flat_normal_map,     // materials; so are the following three
+  white_occlusion,
+  even_metallic_roughness,  // by a texture of one value
+  even_color,
+  flat_vertex_normals,  // vertices
+  still_animation,
+  // Lights of intensity 0, and lights out of range of every triangle, in the order of LightKind.
+  dark_point,
+  dark_spot,
+  dark_directional,
+  distant_point,
+  distant_spot,
+};
+constexpr int kInvisibleCount = 14;
+inline Invisible dark_light(LightKind kind) { return static_cast<Invisible>(9 + static_cast<int>(kind)); }
+inline Invisible distant_light(LightKind kind) { return static_cast<Invisible>(12 + static_cast<int>(kind)); }
+static_assert(static_cast<int>(Invisible::dark_point) == 9 && static_cast<int>(Invisible::distant_point) == 12,
+              "as above");
+
+// Invisible contents that `bake` or import has left out.
+struct Reduction {
+  Invisible what;
+  std::uint32_t count;
+};
+
 struct BvhNode;  // accel/bvh.h
 struct BvhLeaf;  // accel/bvh.h
 
@@ -319,6 +349,7 @@ struct Scene {
   Array<const AnimationLabel> animation_labels;  // one per animation, or empty
   Array<const std::uint8_t> node_visible;        // one per node, or empty: all are, except as channels say
   Array<const SceneOrigin> origin;               // one, or none: 0
+  Array<const Reduction> reductions;             // one per kind, or none
 };
 
 inline bool is_animated(const Scene& scene) {

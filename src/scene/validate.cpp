@@ -225,6 +225,14 @@ static Status validate_origin(const Scene& scene) {
   return success();
 }
 
+static Status validate_reductions(const Scene& scene) {
+  for (std::uint32_t i = 0; i < scene.reductions.count; ++i)
+    if (static_cast<std::uint32_t>(scene.reductions[i].what) >= static_cast<std::uint32_t>(kInvisibleCount))
+      return failure("reductions[%u] is of kind %u, there are %d", i,
+                     static_cast<std::uint32_t>(scene.reductions[i].what), kInvisibleCount);
+  return success();
+}
+
 Status validate_scene(const Scene& scene) {
   RETURN_IF_ERROR(validate_info(scene.info));
   RETURN_IF_ERROR(validate_counts(scene));
@@ -236,6 +244,7 @@ Status validate_scene(const Scene& scene) {
   RETURN_IF_ERROR(validate_lights_and_cameras(scene));
   RETURN_IF_ERROR(validate_default_view(scene));
   RETURN_IF_ERROR(validate_origin(scene));
+  RETURN_IF_ERROR(validate_reductions(scene));
   RETURN_IF_ERROR(validate_nodes(scene));
   RETURN_IF_ERROR(validate_animations(scene));
   RETURN_IF_ERROR(validate_moving_meshes(scene));

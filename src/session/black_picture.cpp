@@ -116,10 +116,15 @@ void describe_material(const Renderer& renderer, const std::vector<std::string>&
                   is_zero(radiance_of_surroundings(renderer.scene.info)) ? "; try --background '#808080'" : "");
 }
 
+bool has_bright_light(const Scene& scene) {
+  return std::any_of(scene.lights.begin(), scene.lights.end(), [](const Light& l) { return !is_zero(l.intensity); });
+}
+
 void describe_light(const Renderer& renderer, Cause cause, const Findings& found, char* text, std::size_t text_bytes) {
   const bool is_bounced = has(renderer.effects.mask, Effect::instant_radiosity);
   const char* more = is_bounced ? "" : ", or try --indirect instant-radiosity for light from other surfaces";
-  if (!has_light_on(renderer.frame))
+  const bool is_out_of_reach = !renderer.settings.forced_off && has_bright_light(renderer.scene);  // and not planned
+  if (!has_light_on(renderer.frame) && !is_out_of_reach)
     std::snprintf(text, text_bytes, "there is no light: %s",
                   renderer.settings.forced_off ? "--effects has switched it off" : "the scene's lights are at 0");
   else if (2 * found.black_backs > found.black)

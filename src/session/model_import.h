@@ -22,6 +22,7 @@ struct ImportOptions {
   bool strict = false;                   // refuse vertices that are not finite instead of leaving out their faces
   UpAxis up = UpAxis::of_format;         // for formats that do not specify it: OBJ, PLY, STL, OFF
   bool animations = true;                // false: the model at rest
+  bool reduce = true;                    // leave out what no picture shows
   // Files that the model names must lie below this folder, and so must the model. Empty: the model's own folder.
   std::string root;
   std::uint64_t byte_count_max = std::uint64_t(1) << 30;  // refuses larger scenes

@@ -13,7 +13,9 @@ bool is_hole(const FrameData& frame, const Material& m, std::uint32_t triangle, 
   return hit_alpha<Effect::alpha_mask>(frame, m, triangle, u, v) < m.alpha_cutoff;
 }
 
-bool lets_light_through(const Material& m) { return !is_zero(m.transmission) || m.alpha_mode == AlphaMode::blend; }
+bool lets_light_through(const FrameData& frame, const Material& m) {
+  return !is_zero(m.transmission) || (m.alpha_mode == AlphaMode::blend && has(frame.mask, Effect::alpha_blend));
+}
 
 const Material& material_of(const FrameData& frame, std::uint32_t triangle) {
   return frame.scene->materials[frame.scene->triangles[triangle].material()];
@@ -32,14 +34,15 @@ bool accept_opaque(const void* context, std::uint32_t triangle, float u, float v
   const auto& shadow = *static_cast<const ShadowContext*>(context);
   const FrameData& frame = *shadow.frame;
   if (shadow.emitter && is_beside(frame, *shadow.emitter, triangle)) return false;
-  return !(clear && lets_light_through(material_of(frame, triangle))) && is_visible<masked>(frame, triangle, u, v);
+  return !(clear && lets_light_through(frame, material_of(frame, triangle))) &&
+         is_visible<masked>(frame, triangle, u, v);
 }
 template <bool masked>
 bool accept_clear(const void* context, std::uint32_t triangle, float u, float v) {
   const auto& shadow = *static_cast<const ShadowContext*>(context);
   const FrameData& frame = *shadow.frame;
   if (shadow.emitter && is_beside(frame, *shadow.emitter, triangle)) return false;
-  return lets_light_through(material_of(frame, triangle)) && is_visible<masked>(frame, triangle, u, v);
+  return lets_light_through(frame, material_of(frame, triangle)) && is_visible<masked>(frame, triangle, u, v);
 }
 
 }  // namespace

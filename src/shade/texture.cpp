@@ -259,7 +259,7 @@ float material_alpha(const Scene& scene, const Material& material, std::uint32_t
   if (scene.colors.count) {
     const Triangle& t = scene.triangles[triangle];
     float a = scene.colors[t.vertex(0)].a, b = scene.colors[t.vertex(1)].a, c = scene.colors[t.vertex(2)].a;
-    alpha *= ((1 - u - v) * a + u * b + v * c) * (1.0f / 65535.0f);
+    alpha *= (a + u * (b - a) + v * (c - a)) * (1.0f / 65535.0f);  // exact where equal
   }
   return alpha;
 }

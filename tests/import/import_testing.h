@@ -23,7 +23,9 @@ inline bool have(const std::string& path) {
   return false;
 }
 
-inline ImportedScene load(const std::string& path, const ImportOptions& options = ImportOptions()) {
+// Loads all of the file's contents, whether or not a picture shows them.
+inline ImportedScene load(const std::string& path, ImportOptions options = ImportOptions()) {
+  options.reduce = false;
   ImportedScene result;
   Status status = import_scene(path, options, &result);
   CHECK_MESSAGE(status.ok, std::string(status.message));

@@ -99,6 +99,7 @@ void FullScene::bind() {
   scene.radiosity_grids = view(radiosity_grids), scene.radiosity_nodes = view(radiosity_nodes);
   scene.radiosity_corners = view(radiosity_corners), scene.radiosity_values = view(radiosity_values);
   scene.radiosity_splits = view(radiosity_splits), scene.radiosity_cuts = view(radiosity_cuts);
+  scene.reductions = view(reductions);
   scene.environment_info = view(environment_info), scene.environment_texels = view(environment_texels);
   scene.grains = view(grains), scene.tangents = view(tangents), scene.second_uvs = view(second_uvs);
   scene.clear_coats = view(clear_coats), scene.default_view = view(default_view);
@@ -126,6 +127,7 @@ void make_full_scene(std::uint64_t seed, std::uint32_t vertex_count, std::uint32
   full->radiosity_splits = {{{0, 0}}};
   full->radiosity_triangles[3] = kRadiosityCutBits;
   full->radiosity_cuts = {{{0, 1, 0}, {0, 0, 1}, {kRadiosityGridBit, kRadiosityGridBit}}};
+  full->reductions = {{Invisible::opaque_blend, 2}};
   full->radiosity_grids = {{{0, 1, 0}, {1, 0, 0}, {0, 0, 1}, 2, 2, 0}};
   full->radiosity_nodes.assign(4, {{1, 2, 3}, {.5f, .25f, 0}, {0, .5f, .25f}, {.125f, 0, 0}});
   full->radiosity_corners = {{{0, 1, 2}}};

@@ -34,6 +34,7 @@ struct FullScene {
   std::vector<pocketray::Vec3> radiosity_values;
   std::vector<pocketray::RadiositySplit> radiosity_splits;
   std::vector<pocketray::RadiosityCut> radiosity_cuts;
+  std::vector<pocketray::Reduction> reductions;
   std::vector<pocketray::EnvironmentInfo> environment_info;
   std::vector<std::uint32_t> environment_texels;
   std::vector<pocketray::Grain> grains;

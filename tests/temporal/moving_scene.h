@@ -9,10 +9,7 @@ inline std::uint32_t vertex_count(const GeneratedScene& s) { return static_cast<
 // Lets the vertices from `first` on move: tests change their positions at rest.
 inline void let_move(GeneratedScene* s, std::uint32_t first) {
   s->nodes.resize(1);
-  s->key_times = {0, 1};
-  s->key_values = {0, 0, 0, 0, 0, 0};
-  s->channels = {{0, 0, 2, 0, ChannelPath::translation, Interpolation::linear}};
-  s->animations = {{0, 1, 1}};
+  s->animations = {{0, 0, 1}};
   MovingMesh mesh = {};
   mesh.vertex_begin = first, mesh.vertex_count = vertex_count(*s) - first;
   mesh.skin = kNone, mesh.instance = Transform();

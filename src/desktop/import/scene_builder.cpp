@@ -8,6 +8,7 @@
 #include "desktop/import/broken_faces.h"
 #include "desktop/import/import_error.h"
 #include "desktop/import/origin.h"
+#include "desktop/import/reduce.h"
 #include "desktop/import/tangents.h"
 #include "scene/animate.h"
 #include "scene/baked.h"
@@ -206,6 +207,30 @@ static Array<const T> view(const std::vector<T>& v) {
   return {v.empty() ? nullptr : v.data(), static_cast<std::uint32_t>(v.size())};
 }
 
+Scene view_of(const SceneArrays& arrays) {
+  Scene scene;
+  scene.info = arrays.info;
+  scene.positions = view(arrays.positions), scene.normals = view(arrays.normals);
+  scene.uvs = view(arrays.uvs), scene.second_uvs = view(arrays.second_uvs), scene.colors = view(arrays.colors);
+  scene.triangles = view(arrays.triangles), scene.materials = view(arrays.materials),
+  scene.material_maps = view(arrays.material_maps), scene.grains = view(arrays.grains);
+  scene.clear_coats = view(arrays.clear_coats);
+  scene.tangents = view(arrays.tangents);
+  scene.textures = view(arrays.textures), scene.texels = view(arrays.texels);
+  scene.lights = view(arrays.lights), scene.cameras = view(arrays.cameras);
+  scene.nodes = view(arrays.nodes), scene.animations = view(arrays.animations), scene.channels = view(arrays.channels);
+  scene.key_times = view(arrays.key_times), scene.key_values = view(arrays.key_values),
+  scene.weights = view(arrays.weights);
+  scene.skins = view(arrays.skins), scene.joints = view(arrays.joints),
+  scene.moving_meshes = view(arrays.moving_meshes);
+  scene.rest_positions = view(arrays.rest_positions), scene.rest_normals = view(arrays.rest_normals);
+  scene.skin_weights = view(arrays.skin_weights);
+  scene.morph_positions = view(arrays.morph_positions), scene.morph_normals = view(arrays.morph_normals);
+  scene.animation_labels = view(arrays.animation_labels), scene.node_visible = view(arrays.node_visible);
+  scene.origin = view(arrays.origin), scene.reductions = view(arrays.reductions);
+  return scene;
+}
+
 // Poses moving vertices by animation 0 at time 0.
 static void pose_at_start(const Scene& scene, const SceneBuilder& builder) {
   SceneArrays* out = builder.out.get();
@@ -284,27 +309,14 @@ void finish_scene(SceneBuilder* builder, const std::string& name, ImportedScene*
   std::snprintf(out.info.name, sizeof out.info.name, "%s", name.c_str());
 
   Scene& scene = result->scene;
-  scene = Scene();
-  scene.info = out.info;
-  scene.positions = view(out.positions), scene.normals = view(out.normals);
-  scene.uvs = view(out.uvs), scene.second_uvs = view(out.second_uvs), scene.colors = view(out.colors);
-  scene.triangles = view(out.triangles), scene.materials = view(out.materials),
-  scene.material_maps = view(out.material_maps), scene.grains = view(out.grains);
-  scene.clear_coats = view(out.clear_coats);
-  scene.tangents = view(out.tangents);
-  scene.textures = view(out.textures), scene.texels = view(out.texels);
-  scene.lights = view(out.lights), scene.cameras = view(out.cameras);
-  scene.nodes = view(out.nodes), scene.animations = view(out.animations), scene.channels = view(out.channels);
-  scene.key_times = view(out.key_times), scene.key_values = view(out.key_values), scene.weights = view(out.weights);
-  scene.skins = view(out.skins), scene.joints = view(out.joints), scene.moving_meshes = view(out.moving_meshes);
-  scene.rest_positions = view(out.rest_positions), scene.rest_normals = view(out.rest_normals);
-  scene.skin_weights = view(out.skin_weights);
-  scene.morph_positions = view(out.morph_positions), scene.morph_normals = view(out.morph_normals);
-  scene.animation_labels = view(out.animation_labels), scene.node_visible = view(out.node_visible);
-  scene.origin = view(out.origin);
+  scene = view_of(out);
   Status status = validate_scene(scene);
   if (!status.ok) fail_import("%s", status.message);
   pose_at_start(scene, *builder);
+  if (builder->options.reduce) {
+    reduce(&out);
+    scene = view_of(out);
+  }
   result->storage = builder->out;
   result->warning = warning_line(*builder);
   result->parts = named_parts(*builder);

@@ -64,6 +64,7 @@ struct SceneArrays {
   std::vector<AnimationLabel> animation_labels;
   std::vector<std::uint8_t> node_visible;
   std::vector<SceneOrigin> origin;  // one, or none; see exact.h
+  std::vector<Reduction> reductions;
 };
 
 // A part of the model; meshes appended until the next part begins belong to it.

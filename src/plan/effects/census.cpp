@@ -4,6 +4,8 @@
 #include "base/limits.h"
 #include "brdf/clear_coat.h"
 #include "indirect/environment.h"
+#include "scene/channel.h"
+#include "scene/invisible.h"
 #include "scene/metallic_roughness.h"
 #include "shade/texture.h"
 
@@ -43,6 +45,51 @@ bool reads_second(const Scene& scene, std::uint32_t material) {
   return second(maps.metallic_roughness) || second(maps.specular) || second(maps.specular_color);
 }
 
+void note(Census* census, Invisible what, std::uint32_t count) {
+  CHECK_LT(static_cast<int>(what), kInvisibleCount);
+  census->invisible[static_cast<int>(what)] += count;
+}
+
+// Returns whether a triangle can be hit: resting ones without area cannot.
+bool has_area(const Scene& scene, const Triangle& t) {
+  const Vec3d a = to_double(scene.positions[t.vertex(0)]);
+  return scene.moving_meshes.count > 0 ||
+         !is_zero(cross(to_double(scene.positions[t.vertex(1)]) - a, to_double(scene.positions[t.vertex(2)]) - a));
+}
+
+bool is_driven(const Scene& scene, std::uint32_t light) {
+  for (const Channel& channel : scene.channels)
+    if (channel.node == light &&
+        (channel.path == ChannelPath::light_intensity || channel.path == ChannelPath::light_scale))
+      return true;
+  return false;
+}
+
+// Counts the lights that reach something now or may do so in another frame.
+void count_lights(const Scene& scene, Census* c) {
+  bool has_range = false;
+  for (const Light& light : scene.lights) has_range |= light.range > 0;
+  const Box bounds = has_range ? triangle_bounds(scene) : empty_box();
+  for (std::uint32_t i = 0; i < scene.lights.count; ++i) {
+    const Light& light = scene.lights[i];
+    const bool is_dark = is_zero(light.intensity) && !is_driven(scene, i),
+               is_far = !is_dark && is_out_of_range(scene, bounds, light);
+    note(c, dark_light(light.kind), is_dark);
+    if (is_far) note(c, distant_light(light.kind), 1);
+    if (!is_dark && !is_far) ++c->lights[static_cast<int>(light.kind)], ++c->light_count;
+  }
+}
+
+// Returns whether an animation shows: it moves something, or lights and cameras stand where nodes put them.
+bool moves(const Scene& scene) {
+  if (!is_animated(scene)) return false;
+  for (const Light& light : scene.lights)
+    if (light.node != kNone) return true;
+  for (const Camera& camera : scene.cameras)
+    if (camera.node != kNone) return true;
+  return !holds_still(scene);
+}
+
 }  // namespace
 
 Census take_census(const Scene& scene, const Settings& settings) {
@@ -51,25 +98,36 @@ Census take_census(const Scene& scene, const Settings& settings) {
   bool shows_unlit = !has(settings.forced_off, Effect::emission);
   Census c;
   std::uint32_t used[kMaterialCountMax / 32] = {};
-  for (const Triangle& t : scene.triangles) used[t.material() / 32] |= 1u << t.material() % 32;
+  for (const Triangle& t : scene.triangles) {
+    std::uint32_t* word = &used[t.material() / 32];
+    const std::uint32_t mask = 1u << t.material() % 32;
+    if (!(*word & mask) && has_area(scene, t)) *word |= mask;
+  }
+  for (const Reduction& r : scene.reductions) note(&c, r.what, r.count);
   for (std::uint32_t i = 0; i < scene.materials.count; ++i) {
     if (!(used[i / 32] >> i % 32 & 1)) continue;
     const Material m =
         scene.material_maps.count ? lobe_bounds(scene.materials[i], scene.material_maps[i]) : scene.materials[i];
     const ClearCoat* coat = coat_of(scene, i);
     const bool shines = coat && has_lobe(*coat);
-    bool is_bumpy = coat && coat->normal.texture != kNone;
+    bool is_bumpy = coat && shows_normal_map(scene, coat->normal, coat->normal_scale);
+    bool has_normal_map = coat && coat->normal.texture != kNone, is_occluded = false;
     if (scene.material_maps.count) {
       const MaterialMaps& maps = scene.material_maps[i];
       c.metallic_roughness += has_lobe_map(maps);
-      is_bumpy |= maps.normal.texture != kNone, c.occluded += maps.occlusion.texture != kNone;
+      is_bumpy |= shows_normal_map(scene, maps.normal, maps.normal_scale);
+      has_normal_map |= maps.normal.texture != kNone;
+      is_occluded = shows_occlusion(scene, maps);
+      c.occluded += is_occluded;
+      note(&c, Invisible::white_occlusion, maps.occlusion.texture != kNone && !is_occluded);
     }
     c.bumpy += is_bumpy, c.coated += coat != nullptr;
+    note(&c, Invisible::flat_normal_map, has_normal_map && !is_bumpy);
     c.grained += !is_zero(m.specular) && has_grain(scene, i);
     c.with_levels += reads_levels(scene, i);
     if (reads_second(scene, i))
       ++c.second_uv;
-    else if (scene.material_maps.count && scene.material_maps[i].occlusion.texture != kNone)
+    else if (is_occluded)
       c.second_uv_occlusion += reads_second_uvs(scene, scene.material_maps[i].occlusion);
     bool transmits = !is_zero(m.transmission);
     ++c.materials;
@@ -77,9 +135,12 @@ Census take_census(const Scene& scene, const Settings& settings) {
     c.mirror += !is_zero(m.mirror) || (coat && has_mirror(*coat));
     c.transmitting += transmits;
     c.absorbing += transmits && !m.thin && !is_zero(m.absorption);
-    c.masked += m.alpha_mode == AlphaMode::mask;
-    c.blended += m.alpha_mode == AlphaMode::blend;
-    c.emissive += !is_zero(m.emission);
+    const bool has_holes = shows_holes(scene, i), is_clear = shows_background(scene, i),
+               emits = shows_emission(scene, i);
+    c.masked += has_holes, c.blended += is_clear, c.emissive += emits;
+    note(&c, Invisible::mask_without_holes, m.alpha_mode == AlphaMode::mask && !has_holes);
+    note(&c, Invisible::opaque_blend, m.alpha_mode == AlphaMode::blend && !is_clear);
+    note(&c, Invisible::black_emission, !is_zero(m.emission) && !emits);
     c.unlit += m.unlit;
     c.textured += m.diffuse_texture.texture != kNone || m.emission_texture.texture != kNone;
     c.reflecting += reflects_surroundings(m) || shines;
@@ -87,7 +148,10 @@ Census take_census(const Scene& scene, const Settings& settings) {
     c.one_sided += !m.double_sided && !transmits;
     c.scattering += !(m.unlit && shows_unlit) && (!is_zero(m.diffuse) || !is_zero(m.specular) || shines);
   }
-  for (const Light& light : scene.lights) ++c.lights[static_cast<int>(light.kind)];
+  count_lights(scene, &c);
+  c.has_normals = shows_vertex_normals(scene);
+  c.is_animated = moves(scene);
+  if (is_animated(scene) && !c.is_animated) note(&c, Invisible::still_animation, scene.animations.count);
   return c;
 }
 

@@ -12,7 +12,10 @@ struct Census {
                 metallic_roughness = 0, bumpy = 0, occluded = 0, with_levels = 0, grained = 0, second_uv = 0,
                 second_uv_occlusion = 0,  // of these, only the occlusion texture does
       coated = 0;
-  std::uint32_t lights[3] = {0, 0, 0};
+  std::uint32_t lights[3] = {0, 0, 0}, light_count = 0;  // that shine on anything
+  bool has_normals = false, is_animated = false;
+  // Contents that no picture shows, in the scene or left out of it.
+  std::uint32_t invisible[kInvisibleCount] = {};
 };
 
 // Counts the scene's materials and lights. If emission is forced off, unlit materials scatter like others.

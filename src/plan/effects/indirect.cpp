@@ -52,7 +52,7 @@ bool is_on(const EffectCall& c, Effect effect) { return c.plan.decisions[static_
 EffectDecision decide_occlusion(const EffectCall& c) {
   const bool has_light = is_on(c, Effect::ambient) || is_on(c, Effect::ambient_gloss) ||
                          (shows_environment(c) && c.settings.indirect != IndirectChoice::none);
-  return has_light ? by_materials(c, c.census.occluded, "have an occlusion texture")
+  return has_light ? by_materials(c, c.census.occluded, "have an occlusion texture", Invisible::white_occlusion)
                    : decided(false, "no ambient light");
 }
 

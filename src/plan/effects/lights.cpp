@@ -10,21 +10,26 @@ EffectDecision decide_area_light(const EffectCall& c) {
   const Settings& settings = c.settings;
   const bool has_groups = c.census.emissive && !selects_lights(c) && settings.area_shadows == AreaShadows::adaptive &&
                           settings.points_per_area_light > kUndividedMax;
-  if (!has_groups) return by_materials(c, c.census.emissive, "emit light");
+  if (!has_groups) return by_materials(c, c.census.emissive, "emit light", Invisible::black_emission);
   return decided(true, "%u of %u materials emit light: %u points each, all tested where partly hidden",
                  c.census.emissive, c.census.materials, settings.points_per_area_light);
 }
 
-std::uint32_t lights_of(const EffectCall& c, LightKind kind) { return c.census.lights[static_cast<int>(kind)]; }
+EffectDecision by_lights(const EffectCall& c, LightKind kind, const char* what) {
+  const EffectDecision decision = by_count(c.census.lights[static_cast<int>(kind)], what);
+  if (kind == LightKind::directional || c.census.invisible[static_cast<int>(dark_light(kind))] > 0)
+    return with_invisible(c, decision, dark_light(kind));
+  return with_invisible(c, decision, distant_light(kind));
+}
 
 EffectDecision decide_shadow(const EffectCall& c) {
-  if (c.scene.lights.count == 0 && c.census.emissive == 0) return decided(false, "no light");
+  if (c.census.light_count == 0 && c.census.emissive == 0) return decided(false, "no light");
   if (c.census.scattering == 0) return decided(false, "no material scatters light");
   return decided(true, "lit, and %u of %u materials scatter", c.census.scattering, c.census.materials);
 }
 
 EffectDecision decide_source_selection(const EffectCall& c) {
-  const std::uint32_t count = c.census.emissive + c.scene.lights.count;
+  const std::uint32_t count = c.census.emissive + c.census.light_count;
   if (c.settings.light_tolerance == 0) return decided(false, "every light tested for shadows");
   if (selects_lights(c))
     return decided(true, "%u lights: the strongest tested for shadows, error ≤ %.3g of the light", count,
@@ -53,10 +58,10 @@ bool never(const EffectCall&) { return false; }
 
 constexpr EffectRule kRules[] = {
     {Effect::area_light, decide_area_light},
-    {Effect::point_light, [](const EffectCall& c) { return by_count(lights_of(c, LightKind::point), "point light"); }},
-    {Effect::spot_light, [](const EffectCall& c) { return by_count(lights_of(c, LightKind::spot), "spot light"); }},
+    {Effect::point_light, [](const EffectCall& c) { return by_lights(c, LightKind::point, "point light"); }},
+    {Effect::spot_light, [](const EffectCall& c) { return by_lights(c, LightKind::spot, "spot light"); }},
     {Effect::directional_light,
-     [](const EffectCall& c) { return by_count(lights_of(c, LightKind::directional), "directional light"); }},
+     [](const EffectCall& c) { return by_lights(c, LightKind::directional, "directional light"); }},
     {Effect::shadow, decide_shadow},
     {Effect::source_selection, decide_source_selection, selects_lights},
     {Effect::environment, decide_environment},

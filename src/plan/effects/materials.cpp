@@ -6,7 +6,8 @@ namespace pocketray {
 namespace {
 
 EffectDecision decide_emission(const EffectCall& c) {
-  return by_materials(c, c.census.emissive + c.census.unlit, c.census.unlit ? "emit or are unlit" : "emit");
+  return by_materials(c, c.census.emissive + c.census.unlit, c.census.unlit ? "emit or are unlit" : "emit",
+                      Invisible::black_emission);
 }
 
 EffectDecision decide_mip_map(const EffectCall& c) {
@@ -21,7 +22,8 @@ EffectDecision decide_vertex_color(const EffectCall& c) {
 }
 
 EffectDecision decide_smooth_normal(const EffectCall& c) {
-  if (c.scene.normals.count == 0) return decided(false, "no vertex has a normal");
+  if (!c.census.has_normals)
+    return with_invisible(c, decided(false, "no vertex has a normal of its own"), Invisible::flat_vertex_normals);
   const bool as_scene = c.settings.normals == NormalMode::as_scene;
   return decided(as_scene, as_scene ? "vertices have normals" : "flat normals requested");
 }
@@ -31,16 +33,24 @@ constexpr EffectRule kRules[] = {
     {Effect::mirror, [](const EffectCall& c) { return by_materials(c, c.census.mirror, "mirror"); }},
     {Effect::refraction, [](const EffectCall& c) { return by_materials(c, c.census.transmitting, "transmit"); }},
     {Effect::absorption, [](const EffectCall& c) { return by_materials(c, c.census.absorbing, "absorb"); }},
-    {Effect::alpha_mask, [](const EffectCall& c) { return by_materials(c, c.census.masked, "have holes"); }},
+    {Effect::alpha_mask,
+     [](const EffectCall& c) { return by_materials(c, c.census.masked, "have holes", Invisible::mask_without_holes); }},
     {Effect::alpha_blend,
-     [](const EffectCall& c) { return by_materials(c, c.census.blended, "blend with the background"); }},
+     [](const EffectCall& c) {
+       return by_materials(c, c.census.blended, "blend with the background", Invisible::opaque_blend);
+     }},
     {Effect::emission, decide_emission},
-    {Effect::texture, [](const EffectCall& c) { return by_materials(c, c.census.textured, "have a texture"); }},
+    {Effect::texture,
+     [](const EffectCall& c) { return by_materials(c, c.census.textured, "have a texture", Invisible::even_color); }},
     {Effect::metallic_roughness,
      [](const EffectCall& c) {
-       return by_materials(c, c.census.metallic_roughness, "have a metallic-roughness or specular texture");
+       return by_materials(c, c.census.metallic_roughness, "have a metallic-roughness or specular texture",
+                           Invisible::even_metallic_roughness);
      }},
-    {Effect::normal_map, [](const EffectCall& c) { return by_materials(c, c.census.bumpy, "have a normal texture"); }},
+    {Effect::normal_map,
+     [](const EffectCall& c) {
+       return by_materials(c, c.census.bumpy, "have a normal texture", Invisible::flat_normal_map);
+     }},
     {Effect::anisotropy, [](const EffectCall& c) { return by_materials(c, c.census.grained, "have a grain"); }},
     {Effect::clear_coat, [](const EffectCall& c) { return by_materials(c, c.census.coated, "have a clear coat"); }},
     {Effect::mip_map, decide_mip_map},

@@ -28,7 +28,10 @@ EffectDecision decide_undersampling(const EffectCall& c) {
 }
 
 EffectDecision decide_animation(const EffectCall& c) {
-  if (!is_animated(c.scene)) return decided(false, "nothing moves");
+  const std::uint32_t still = c.census.invisible[static_cast<int>(Invisible::still_animation)];
+  if (!c.census.is_animated && still > 0)
+    return decided(false, "nothing moves (%u animation%s still)", still, still == 1 ? " holds" : "s hold");
+  if (!c.census.is_animated) return decided(false, "nothing moves");
   const std::uint32_t count = c.scene.animations.count;
   return decided(true, "%u animation%s", count, count == 1 ? "" : "s");
 }

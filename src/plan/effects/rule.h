@@ -35,8 +35,12 @@ const IndirectInfo* choose_indirect(const Scene& scene, const Settings& settings
 EffectDecision decided(bool on, const char* format, ...) __attribute__((format(printf, 2, 3)));
 // On if `count` of the materials do what the verb says: "2 of 5 materials shine".
 EffectDecision by_materials(const EffectCall& call, std::uint32_t count, const char* verb);
+// If off, the reason also says how many have invisible content: "none of 5 materials emit (2 with a black texture)".
+EffectDecision by_materials(const EffectCall& call, std::uint32_t count, const char* verb, Invisible invisible);
 // On if there are any: "3 point lights".
 EffectDecision by_count(std::uint32_t count, const char* what);
+// Adds to the reason of an effect that is off.
+EffectDecision with_invisible(const EffectCall& call, EffectDecision decision, Invisible invisible);
 
 // True if enough lights are there that --light-tolerance applies.
 bool selects_lights(const EffectCall& call);

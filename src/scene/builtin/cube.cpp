@@ -38,11 +38,11 @@ void add_room(MeshWriter* mesh) {
 
 }  // namespace
 
-std::size_t cube_need() { return mesh_need(kSize) + parts_need(kMaterialCount, 0, 1); }
+std::size_t cube_need() { return flat_mesh_need(kSize) + parts_need(kMaterialCount, 0, 1); }
 
 void build_cube(Arena* arena, Scene* scene) {
   name_scene(scene, "cube");
-  MeshWriter mesh = make_mesh(arena, kSize);
+  MeshWriter mesh = make_flat_mesh(arena, kSize);
   add_room(&mesh);
   finish_mesh(mesh, scene);
   Array<Material> materials = default_array<Material>(arena, kMaterialCount);

@@ -12,11 +12,11 @@ constexpr MeshSize kSize = 2 * box_size();
 
 }  // namespace
 
-std::size_t furnace_need() { return mesh_need(kSize) + parts_need(1, 0, 1); }
+std::size_t furnace_need() { return flat_mesh_need(kSize) + parts_need(1, 0, 1); }
 
 void build_furnace(Arena* arena, Scene* scene) {
   name_scene(scene, "furnace");
-  MeshWriter mesh = make_mesh(arena, kSize);
+  MeshWriter mesh = make_flat_mesh(arena, kSize);
   add_box(&mesh, {-1, -1, -1}, {1, 1, 1});
   for (Triangle& t : mesh.triangles) {  // the room is seen from inside
     if (&t == mesh.triangles.data + mesh.triangle_count) break;

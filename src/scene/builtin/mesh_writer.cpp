@@ -6,9 +6,14 @@
 namespace pocketray {
 
 MeshWriter make_mesh(Arena* arena, MeshSize size) {
+  MeshWriter mesh = make_flat_mesh(arena, size);
+  mesh.normals = arena_array<Vec3>(arena, size.vertices);
+  return mesh;
+}
+
+MeshWriter make_flat_mesh(Arena* arena, MeshSize size) {
   MeshWriter mesh;
   mesh.positions = arena_array<Vec3>(arena, size.vertices);
-  mesh.normals = arena_array<Vec3>(arena, size.vertices);
   mesh.triangles = arena_array<Triangle>(arena, size.triangles);
   return mesh;
 }
@@ -24,7 +29,10 @@ void finish_mesh(const MeshWriter& mesh, Scene* scene) {
 std::uint32_t add_vertex(MeshWriter* mesh, const Vec3& position, const Vec3& normal) {
   CHECK_LT(mesh->vertex_count, mesh->positions.count);
   mesh->positions[mesh->vertex_count] = position;
-  mesh->normals[mesh->vertex_count] = normal;
+  if (mesh->normals.count)
+    mesh->normals[mesh->vertex_count] = normal;
+  else
+    CHECK(is_zero(normal));
   return mesh->vertex_count++;
 }
 

@@ -24,6 +24,9 @@ constexpr std::size_t mesh_need(MeshSize size) {
   return 2 * arena_need<Vec3>(size.vertices) + arena_need<Triangle>(size.triangles);
 }
 MeshWriter make_mesh(Arena* arena, MeshSize size);
+// A mesh of flat faces alone, which stores no normals.
+constexpr std::size_t flat_mesh_need(MeshSize size) { return mesh_need(size) - arena_need<Vec3>(size.vertices); }
+MeshWriter make_flat_mesh(Arena* arena, MeshSize size);
 // Hands the arrays to the scene; they must be full.
 void finish_mesh(const MeshWriter& mesh, Scene* scene);
 

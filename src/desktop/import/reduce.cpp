@@ -1,0 +1,242 @@
+#include "desktop/import/reduce.h"
+
+#include <algorithm>
+#include <map>
+
+#include "base/check.h"
+#include "base/color.h"
+#include "scene/animate.h"
+#include "scene/invisible.h"
+#include "scene/metallic_roughness.h"
+#include "scene/texture_levels.h"
+
+namespace pocketray {
+namespace {
+
+// Calls visit(use) for every use of a texture.
+template <class Visit>
+void each_use(SceneArrays* arrays, Visit visit) {
+  for (Material& m : arrays->materials) visit(&m.diffuse_texture), visit(&m.emission_texture);
+  for (MaterialMaps& maps : arrays->material_maps)
+    for (TextureUse* use :
+         {&maps.metallic_roughness, &maps.specular, &maps.specular_color, &maps.normal, &maps.occlusion})
+      visit(use);
+  for (Grain& grain : arrays->grains) visit(&grain.texture);
+  for (ClearCoat& coat : arrays->clear_coats)
+    for (TextureUse* use : {&coat.strength_texture, &coat.roughness_texture, &coat.normal}) visit(use);
+}
+
+class Reducer {
+ public:
+  explicit Reducer(SceneArrays* arrays) : out_(*arrays), scene_(view_of(*arrays)) {}
+  void reduce_all();
+
+ private:
+  void note(Invisible what, std::uint32_t count = 1) { counts_[static_cast<int>(what)] += count; }
+  bool is_animated(std::uint32_t material, ChannelPath path) const;
+  void reduce_emission(std::uint32_t index);
+  void reduce_alpha(std::uint32_t index);
+  void reduce_maps(std::uint32_t index);
+  void fold_metallic_roughness(std::uint32_t index);
+  void fold_color(std::uint32_t index);
+  void reduce_animations();
+  void reduce_lights();
+  void reduce_normals();
+  void drop_unused_textures();
+
+  SceneArrays& out_;
+  Scene scene_;
+  std::uint32_t counts_[kInvisibleCount] = {};
+};
+
+bool Reducer::is_animated(std::uint32_t material, ChannelPath path) const {
+  return std::any_of(out_.channels.begin(), out_.channels.end(),
+                     [&](const Channel& c) { return c.path == path && c.node == material; });
+}
+
+void Reducer::reduce_emission(std::uint32_t index) {
+  Material& m = out_.materials[index];
+  if (is_zero(m.emission) || is_animated(index, ChannelPath::material_emission) || shows_emission(scene_, index))
+    return;
+  m.emission = {0, 0, 0}, m.emission_texture = TextureUse();
+  note(Invisible::black_emission);
+}
+
+void Reducer::reduce_alpha(std::uint32_t index) {
+  Material& m = out_.materials[index];
+  const bool is_mask = m.alpha_mode == AlphaMode::mask;
+  if (m.alpha_mode == AlphaMode::opaque || shows_holes(scene_, index) || shows_background(scene_, index)) return;
+  m.alpha_mode = AlphaMode::opaque;
+  note(is_mask ? Invisible::mask_without_holes : Invisible::opaque_blend);
+}
+
+void Reducer::reduce_maps(std::uint32_t index) {
+  if (index < out_.material_maps.size()) {
+    MaterialMaps& maps = out_.material_maps[index];
+    if (maps.normal.texture != kNone && !shows_normal_map(scene_, maps.normal, maps.normal_scale))
+      maps.normal = TextureUse(), note(Invisible::flat_normal_map);
+    if (maps.occlusion.texture != kNone && !shows_occlusion(scene_, maps))
+      maps.occlusion = TextureUse(), note(Invisible::white_occlusion);
+  }
+  if (index >= out_.clear_coats.size()) return;
+  ClearCoat& coat = out_.clear_coats[index];
+  if (coat.normal.texture != kNone && !shows_normal_map(scene_, coat.normal, coat.normal_scale))
+    coat.normal = TextureUse(), note(Invisible::flat_normal_map);
+}
+
+// Sets the lobes as apply_metallic_roughness() and lobes_at() of shade/material_maps.cpp do at every point.
+void Reducer::fold_metallic_roughness(std::uint32_t index) {
+  if (index >= out_.material_maps.size()) return;
+  MaterialMaps& maps = out_.material_maps[index];
+  std::uint8_t value[4];
+  if (maps.metallic_roughness.texture == kNone || maps.specular.texture != kNone ||
+      maps.specular_color.texture != kNone || !has_one_value(scene_, maps.metallic_roughness, value))
+    return;
+  if (is_animated(index, ChannelPath::material_diffuse)) return;
+  auto within = [](float x, float low, float high) { return x > low ? (x < high ? x : high) : low; };
+  const float metallic =
+      within(maps.metallic * (static_cast<float>(value[2]) / 255), maps.metallic_low, maps.metallic_high);
+  const float stored = static_cast<float>(static_cast<std::uint16_t>(metallic * 65535 + 0.5f)) / 65535;
+  const float roughness =
+      within(maps.roughness * (static_cast<float>(value[1]) / 255), maps.roughness_low, maps.roughness_high);
+  Material& m = out_.materials[index];
+  set_lobes(maps.model, stored, roughness, 0, &m);
+  m.diffuse = maps.model.base * (1 - metallic);
+  maps.metallic_roughness = TextureUse();
+  note(Invisible::even_metallic_roughness);
+}
+
+// Returns whether filters that average 3 or 4 lookups return the value itself.
+bool survives_averaging(float x) { return (x + x + x) * (1 / 3.0f) == x && (x + x + x + x) * (1 / 4.0f) == x; }
+
+void Reducer::fold_color(std::uint32_t index) {
+  Material& m = out_.materials[index];
+  std::uint8_t value[4];
+  if (m.diffuse_texture.texture == kNone || !has_one_value(scene_, m.diffuse_texture, value)) return;
+  const Vec3 tint = {srgb_to_linear(value[0]), srgb_to_linear(value[1]), srgb_to_linear(value[2])};
+  const float alpha = static_cast<float>(value[3]) * (1.0f / 255.0f);
+  const bool is_white = tint == Vec3{1, 1, 1};
+  if (!is_white) {
+    const bool has_lobes_from_maps = index < out_.material_maps.size() && has_lobe_map(out_.material_maps[index]);
+    const bool tints_metal = !is_zero(m.specular_tinted) || !is_zero(m.mirror_tinted);
+    if (has_lobes_from_maps || (tints_metal && !out_.colors.empty())) return;
+    if (is_animated(index, ChannelPath::material_diffuse)) return;
+  }
+  const bool has_levels = out_.textures[m.diffuse_texture.texture].level_count > 1;
+  for (float x : {tint.x, tint.y, tint.z, alpha})
+    if (has_levels && !survives_averaging(x)) return;
+  const Vec3 missing = Vec3{1, 1, 1} - tint;
+  m.diffuse *= tint, m.opacity *= alpha;
+  m.specular = m.specular - m.specular_tinted * missing, m.mirror = m.mirror - m.mirror_tinted * missing;
+  m.specular_tinted = min(m.specular_tinted * tint, m.specular),
+  m.mirror_tinted = min(m.mirror_tinted * tint, m.mirror);
+  m.diffuse_texture = TextureUse();
+  note(Invisible::even_color);
+}
+
+// Places what nodes hold as they do at time 0.
+void Reducer::reduce_animations() {
+  if (!holds_still(scene_)) return;
+  std::vector<std::uint8_t> block(pose_need(scene_) + kArenaAlignment);
+  Arena arena = make_arena("pose", block.data(), block.size());
+  const Pose pose = make_pose(scene_, &arena);
+  std::copy(pose.lights.begin(), pose.lights.end(), out_.lights.begin());
+  std::copy(pose.cameras.begin(), pose.cameras.end(), out_.cameras.begin());
+  note(Invisible::still_animation,
+       static_cast<std::uint32_t>(std::count_if(out_.animation_labels.begin(), out_.animation_labels.end(),
+                                                [](const AnimationLabel& label) { return label.combines == 0; })));
+  if (out_.animation_labels.empty())
+    note(Invisible::still_animation, static_cast<std::uint32_t>(out_.animations.size()));
+  out_.animations.clear(), out_.animation_labels.clear(), out_.channels.clear();
+  out_.key_times.clear(), out_.key_values.clear(), out_.weights.clear();
+  out_.nodes.clear(), out_.node_visible.clear(), out_.skins.clear(), out_.joints.clear(), out_.skin_weights.clear();
+  out_.moving_meshes.clear(), out_.rest_positions.clear(), out_.rest_normals.clear();
+  out_.morph_positions.clear(), out_.morph_normals.clear();
+  out_.info.frame_count = 1;
+  scene_ = view_of(out_);
+}
+
+// Lights that nodes or channels may still change stay, and so do those without which the scene would get the default
+// lights.
+void Reducer::reduce_lights() {
+  const bool may_change = std::any_of(out_.channels.begin(), out_.channels.end(), [](const Channel& c) {
+    return c.path == ChannelPath::light_intensity || c.path == ChannelPath::light_scale;
+  });
+  if (may_change || out_.lights.empty()) return;
+  const Box bounds = triangle_bounds(scene_);
+  std::vector<Light> kept;
+  std::vector<Invisible> dropped;
+  for (const Light& light : out_.lights) {
+    const bool is_dark = is_zero(light.intensity), is_far = !is_dark && is_out_of_range(scene_, bounds, light);
+    if (is_dark || is_far)
+      dropped.push_back(is_dark ? dark_light(light.kind) : distant_light(light.kind));
+    else
+      kept.push_back(light);
+  }
+  if (kept.empty()) return;
+  for (Invisible what : dropped) note(what);
+  out_.lights.swap(kept);
+}
+
+void Reducer::reduce_normals() {
+  if (out_.normals.empty() || shows_vertex_normals(scene_)) return;
+  const auto given = std::count_if(out_.normals.begin(), out_.normals.end(), [](const Vec3& n) { return !is_zero(n); });
+  if (given > 0) note(Invisible::flat_vertex_normals, static_cast<std::uint32_t>(given));
+  out_.normals.clear(), out_.rest_normals.clear(), out_.morph_normals.clear();
+}
+
+void Reducer::drop_unused_textures() {
+  std::vector<bool> is_used(out_.textures.size());
+  each_use(&out_, [&](const TextureUse* use) {
+    if (use->texture != kNone) is_used[use->texture] = true;
+  });
+  if (std::find(is_used.begin(), is_used.end(), false) == is_used.end()) return;
+  std::vector<std::uint32_t> place(out_.textures.size(), kNone);
+  std::map<std::uint32_t, std::uint32_t> moved;  // first texels of runs, which textures may share
+  std::vector<Texture> textures;
+  std::vector<std::uint32_t> texels;
+  for (std::size_t i = 0; i < is_used.size(); ++i) {
+    if (!is_used[i]) continue;
+    Texture t = out_.textures[i];
+    CHECK(t.format == TexelFormat::exact);
+    const std::uint32_t* from = out_.texels.data() + t.texel_begin;
+    const auto known = moved.find(t.texel_begin);
+    const std::uint32_t begin = known != moved.end() ? known->second : static_cast<std::uint32_t>(texels.size());
+    if (known == moved.end()) texels.insert(texels.end(), from, from + level_texels(t.width, t.height, t.level_count));
+    moved[t.texel_begin] = begin, t.texel_begin = begin;
+    place[i] = static_cast<std::uint32_t>(textures.size());
+    textures.push_back(t);
+  }
+  each_use(&out_, [&](TextureUse* use) {
+    if (use->texture != kNone) use->texture = place[use->texture];
+  });
+  out_.textures.swap(textures), out_.texels.swap(texels);
+}
+
+void Reducer::reduce_all() {
+  const std::size_t texture_count = out_.textures.size();
+  for (std::uint32_t i = 0; i < out_.materials.size(); ++i) {
+    reduce_emission(i);
+    reduce_alpha(i);
+    reduce_maps(i);
+    fold_metallic_roughness(i);
+    fold_color(i);
+  }
+  reduce_animations();
+  reduce_lights();
+  reduce_normals();
+  drop_unused_textures();
+  if (texture_count > 0 && out_.textures.empty() && out_.grains.empty())
+    out_.uvs.clear(), out_.second_uvs.clear(), out_.tangents.clear();
+  for (std::uint32_t what = 0; what < kInvisibleCount; ++what)
+    if (counts_[what] > 0) out_.reductions.push_back({static_cast<Invisible>(what), counts_[what]});
+}
+
+}  // namespace
+
+void reduce(SceneArrays* arrays) {
+  CHECK(arrays != nullptr && arrays->reductions.empty());
+  Reducer(arrays).reduce_all();
+}
+
+}  // namespace pocketray
