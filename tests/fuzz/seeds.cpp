@@ -160,7 +160,8 @@ std::vector<FuzzSeed> text_seeds() {
       seed("state", 6,
            R"({"key": {}, "rounds": 1, "counted": "", "references": ["a"], "points": {"samples 4": )"
            R"({"ns_per_pixel": [812.5], "instructions_per_pixel": "none", "bytes_per_frame": 9500.5, "errors": [0.1, )"
-           R"(0.1, 0.01, 0.1, 0.1, 0.1, 0.1, "inf"]}}})")};
+           R"(0.01, 0.1, 0.1, 0.1, 0.1, "inf"], "truth": {"flip": 0.2, "one": [0.2, 0.25], "other": [0.2, 0.15]}, )"
+           R"("model": {"flip": 0.1, "one": [0.1], "other": [0.1]}, "flip_as": [0.2, 0.2, 0.15]}}})")};
 }
 
 // A well-behaved server with each kind of device; then one that changes, drops, repeats and adds messages.
