@@ -41,7 +41,7 @@ if "${run[@]}" --help | grep -q '^ *reference '; then
   expect reference_cut 1 'cut.pfm' "${tiny[@]}" -o cut.pfm
   expect picture 0 '' render cube --size 16x12 -o picture.pfm
   expect reference_picture 1 'without its samples' "${tiny[@]}" -o picture.pfm
-  expect accuracy_by_reference 0 '"reference_samples": 40' accuracy cube --size 16x12 --threads 2 --rounds 1 --reference once.pfm -o sweep --json -
+  expect accuracy_by_reference 0 '"samples": 40' accuracy cube --size 16x12 --threads 2 --rounds 1 --reference once.pfm -o sweep --json -
   expect accuracy_by_other_reference 1 'once.pfm.*size' accuracy cube --size 8x6 --rounds 1 --reference once.pfm -o other
 fi
 

@@ -116,7 +116,7 @@ TEST_CASE("accuracy_measures_every_knob_of_the_scene") {
   for (const KnobFigures& k : sweep.knobs) names += k.name + " ";
   for (const std::string& note : sweep.notes) notes += note + "\n";
   std::string wanted =
-      "samples area-lights normals indirect selective "
+      "samples area-lights indirect selective "
       "resolution output ";
 #ifdef POCKETRAY_HAVE_NETWORK
   wanted += "near-lossless ";
