@@ -31,7 +31,7 @@ struct GltfWriter {
     while (bytes.size() % 4) bytes.push_back(0);
     std::size_t offset = bytes.size(), size = values.size() * sizeof(T);
     bytes.resize(offset + size);
-    std::memcpy(bytes.data() + offset, values.data(), size);
+    if (size > 0) std::memcpy(bytes.data() + offset, values.data(), size);
     if (count) views += ",", accessors += ",";
     views += "{\"buffer\":0,\"byteOffset\":" + std::to_string(offset) + ",\"byteLength\":" + std::to_string(size) + "}";
     accessors += "{\"bufferView\":" + std::to_string(count) +

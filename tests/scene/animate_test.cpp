@@ -376,7 +376,7 @@ TEST_CASE("animate_overflow_stays_within_coordinates") {
 // Goal: a scene that is not animated costs nothing.
 TEST_CASE("animate_static_scene_needs_no_memory") {
   FullScene full;
-  make_full_scene(2, 12, 3, &full);
+  make_full_scene(2, 12, 4, &full);
   full.scene.animations = {};
   CHECK(pose_need(full.scene) == 0);
   Arena arena;
