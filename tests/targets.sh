@@ -8,7 +8,7 @@ for name in $names; do
   case $name in
     absence | bench_embree | install | documents | source_rules | assertions | mutation_list) echo all ;;
     cli_* | serve | conformance | reconnects | numbers | packages | blender) echo pocketray_sealed ;;
-    objects | turns | hard_page) echo pocketray_core ;;
+    objects | turns | hard_page | device_profiles | toolchains) echo pocketray_core ;;
     mpi | wrong_cpu | device_parts) echo pocketray ;;
     progressive_cost) echo progressive_cost ;;
     *) echo "test_$name" ;;
