@@ -95,7 +95,7 @@ TEST_CASE("faults_far_sessions_end_well") {
       "1.05 times the device's time alone\n",
       static_cast<unsigned long long>(count), frames, by_effect, lit, losses, late);
   CHECK(failures == 0);
-  CHECK((single || (by_effect > frames / 10 && lit > frames / 20)));
+  CHECK((count < 20 || (by_effect > frames / 10 && lit > frames / 20)));  // few sessions may have none by effect
 }
 
 // Goal: sessions that once failed now pass. Method: their seeds.
