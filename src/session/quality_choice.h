@@ -1,4 +1,4 @@
-// What a level of quality means for a scene.
+// Translates levels of quality into settings for a scene.
 #pragma once
 #include "plan/quality_level.h"
 #include "session/scene_options.h"

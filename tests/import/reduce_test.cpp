@@ -1,4 +1,4 @@
-// What no picture shows is left out at import.
+// Import leaves out contents that no picture shows.
 #include <algorithm>
 
 #include "brdf/brdf_list.h"

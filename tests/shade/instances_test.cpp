@@ -30,7 +30,7 @@ std::size_t instance_count(const Table& table) {
 TEST_CASE("an instance of radiance has the code of its plan") {
   each_plan(kRadianceTable, [](EffectMask plan) {
     EffectMask lacking = plan & ~kRadianceTable.instance_of(plan);
-    // What has no effect by itself, and a grain, which metallic roughness includes.
+    // These have no effect by themselves, and metallic roughness includes a grain.
     if (!has(plan, Effect::refraction)) lacking &= ~bit(Effect::absorption);
     if (!(plan & kGoesOn)) lacking &= ~bit(Effect::mip_map);
     if (has(kRadianceTable.instance_of(plan), Effect::metallic_roughness)) lacking &= ~bit(Effect::anisotropy);

@@ -43,7 +43,7 @@ std::vector<const Measured*> without_twins(const std::vector<const Measured*>& a
   return kept;
 }
 
-// Of the configurations, those on their front, fastest first.
+// Returns the front of some configurations, fastest first.
 std::vector<const Measured*> front_among(const std::vector<const Measured*>& every, Judge judge) {
   const std::vector<const Measured*> all = without_twins(every, judge);
   std::vector<const Measured*> front;

@@ -58,7 +58,7 @@ std::string choice_card(const std::string& png, const std::string& name, const s
          "<br /><code>" + escaped(how) + "</code></figcaption></figure>\n";
 }
 
-// What to set and what one gets, level by level.
+// Shows each level of quality: its picture, time, error and options.
 std::string choices_of(const Sweep& sweep, const PagePictures& pictures) {
   if (sweep.choices.empty()) return "";
   std::string cards;
@@ -155,7 +155,7 @@ std::string other_section(const Sweep& sweep, const PagePictures& pictures) {
          pair(plot_figure(pictures, std::string("front_") + name_of(other)), front_table(sweep, other));
 }
 
-// What the screen's format costs: the baseline's picture as each shows it.
+// States the price of the screen's format: the error of the baseline's picture in each.
 std::string format_section(const Sweep& sweep) {
   if (sweep.measured.empty() || !std::isfinite(sweep.measured.front().flip_as[0])) return "";
   std::string text;

@@ -92,7 +92,7 @@ struct Strip {
   std::vector<StripRow> rows;  // a few values, least accurate first
 };
 
-// What a level of quality sets and gets.
+// A level of quality: its options, and the picture, time and error that they give.
 struct LevelPicture {
   std::string level, settings;  // "high"; as options: "--samples 4 --area-lights 16", empty: the defaults
   double ms = 0;                // per frame
