@@ -149,10 +149,10 @@ TEST_CASE("page_is_well_formed_and_shows_each_knob") {
 // its picture; a sweep without levels.
 TEST_CASE("page_opens_with_what_to_set") {
   Sweep sweep = sample_sweep();
-  sweep.choices = {{"low", "--samples 1", 12.5, 0.25, sample_picture(4, 3, 0)},
+  sweep.quality = {{"low", "--samples 1", 12.5, 0.25, sample_picture(4, 3, 0)},
                    {"best", "", 480, 0.0625, sample_picture(4, 3, 1)}};
   PagePictures pictures;
-  pictures.choices["low"] = "png", pictures.truth_png = "truth";
+  pictures.quality["low"] = "png", pictures.truth_png = "truth";
   const std::string page = page_of(sweep, pictures);
   CHECK(markup_fault(page) == "");
   CHECK(has(page, "<b>low</b> 12.5 ms, FLIP 0.250<br /><code>--quality low: --samples 1</code>"));
@@ -278,6 +278,25 @@ TEST_CASE("report_has_no_gaps") {
     for (std::size_t at = page.find("<svg"); at != std::string::npos; at = page.find("<svg", at + 1)) ++drawings;
     CHECK(drawings == (drawn ? plots.size() : 0));
   }
+}
+
+// Goal: a strip begins with the picture that its knob is judged by.
+TEST_CASE("report_draws_strips_beside_their_judge") {
+  Sweep sweep = sample_sweep();
+  sweep.truth_picture = sample_picture(32, 24, 99);
+  sweep.knobs[0].judge = Judge::truth;
+  Sweep other = sweep;
+  other.truth_picture = sample_picture(32, 24, 7);
+  Folder one, two;
+  bool drawn = false;
+  const auto draws_nothing = [](const std::string&, const std::vector<std::string>&) { return false; };
+  REQUIRE(write_report(one.path, sweep, write_whole, draws_nothing, &drawn).ok);
+  REQUIRE(write_report(two.path, other, write_whole, draws_nothing, &drawn).ok);
+  auto strip = [](const Folder& folder, const Sweep& of, int knob) {
+    return content(folder.path + ("/strip_" + of.knobs[static_cast<std::size_t>(knob)].name) + ".png");
+  };
+  CHECK(strip(one, sweep, 0) != strip(two, other, 0));
+  CHECK(strip(one, sweep, 1) == strip(two, other, 1));
 }
 
 // Goal: a missing folder is reported in one line.

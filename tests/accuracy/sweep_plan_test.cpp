@@ -114,6 +114,13 @@ TEST_CASE("sweep_plan_measures_a_ladder_beside_the_knobs") {
   CHECK(plan.points.back().value == "samples 4, depth 5");
   CHECK(plan.points.back().configuration.settings.ray_depth == 5);
   CHECK(plan.points.back().price == 4);
+  // A ladder may take a method whose settings the baseline ignores.
+  EffectPlan ambient;
+  ambient.mask = bit(Effect::ambient);
+  Settings lit = baseline.settings;
+  lit.indirect = indirect_choice(Effect::instant_radiosity), lit.virtual_lights = 256;
+  CHECK(plan_sweep("file.pray", ambient, baseline, always, 16, {lit}).points.back().value ==
+        "indirect instant-radiosity, virtual-lights 256");
 
   std::vector<PointFigures> figures = made_up(plan);
   for (std::size_t i = 0; i < plan.points.size(); ++i)

@@ -1,7 +1,6 @@
 // pocketray accuracy: measures what accuracy costs in time.
 #include "app/accuracy/accuracy_command.h"
 #include "app/options.h"
-#include "session/front_file.h"
 #include "desktop/accuracy/csv.h"
 #include "desktop/accuracy/gnuplot.h"
 #include "desktop/accuracy/report.h"
@@ -10,6 +9,7 @@
 #include "desktop/sweep/references.h"
 #include "desktop/sweep/report.h"
 #include "desktop/sweep/rigs.h"
+#include "session/front_file.h"
 #include "session/gnuplot.h"
 #include "session/note.h"
 #include "session/output.h"
@@ -39,8 +39,9 @@ int lead(AccuracyOptions options) {
                  "pocketray: no plots: gnuplot is missing or failed; install it (Debian: gnuplot), then: cd -- %s && "
                  "gnuplot *.gnuplot\n",
                  shell_word(options.folder).c_str());
-  // A budget does not choose effects, so a front measured with manually switched effects is not kept.
-  bool kept = status.ok && front.front.count > 1 && !front.path.empty() && options.common.effects == "auto";
+  // A budget does not choose effects and judges by the truth, so a front measured otherwise is not kept.
+  bool kept = status.ok && front.front.count > 1 && !front.path.empty() && options.common.effects == "auto" &&
+              sweep.judge == Judge::truth;
   if (kept) {
     Status written = cache_front(front.path, front.front);
     kept = written.ok;

@@ -52,25 +52,25 @@ std::string samples_text(const ReferenceFigures& reference) {
 }
 
 // One picture of the first screen: what it looks like, costs and takes to get.
-std::string choice_card(const std::string& png, const std::string& name, const std::string& figures,
-                        const std::string& how) {
+std::string level_card(const std::string& png, const std::string& name, const std::string& figures,
+                       const std::string& how) {
   return "<figure>" + (png.empty() ? "" : image(png, name)) + "<figcaption><b>" + escaped(name) + "</b> " + figures +
          "<br /><code>" + escaped(how) + "</code></figcaption></figure>\n";
 }
 
 // Shows each level of quality: its picture, time, error and options.
-std::string choices_of(const Sweep& sweep, const PagePictures& pictures) {
-  if (sweep.choices.empty()) return "";
+std::string quality_of(const Sweep& sweep, const PagePictures& pictures) {
+  if (sweep.quality.empty()) return "";
   std::string cards;
-  for (const LevelPicture& choice : sweep.choices) {
-    auto png = pictures.choices.find(choice.level);
-    cards += choice_card(png == pictures.choices.end() ? "" : png->second, choice.level,
-                         figure(choice.ms) + " ms, FLIP " + figure(choice.flip),
-                         "--quality " + choice.level + (choice.settings.empty() ? "" : ": " + choice.settings));
+  for (const LevelPicture& level : sweep.quality) {
+    auto png = pictures.quality.find(level.level);
+    cards += level_card(png == pictures.quality.end() ? "" : png->second, level.level,
+                        figure(level.ms) + " ms, FLIP " + figure(level.flip),
+                        "--quality " + level.level + (level.settings.empty() ? "" : ": " + level.settings));
   }
-  cards += choice_card(pictures.truth_png, text_of(Judge::truth),
-                       sweep.truth.samples ? format("%u samples per pixel", sweep.truth.samples) : "", "reference");
-  return "<div class=\"tiles choices\">\n" + cards +
+  cards += level_card(pictures.truth_png, text_of(Judge::truth),
+                      sweep.truth.samples ? format("%u samples per pixel", sweep.truth.samples) : "", "reference");
+  return "<div class=\"tiles quality\">\n" + cards +
          "</div>\n<p>FLIP is how different a picture looks from full light "
          "transport when one flips between them: .01 is hard to see, .05 seen at once, .2 another picture. "
          "<code>--budget-ms</code> takes the best setting for a time, <code>--flip-max</code> the fastest for an "
@@ -83,7 +83,7 @@ std::string head_of(const Sweep& sweep, const PagePictures& pictures) {
                      (sweep.scene.find('/') == std::string::npos ? "" : escaped(sweep.scene) + ", ") +
                      format("%u × %u pixels", sweep.width, sweep.height) + ", " + escaped(sweep.machine) + ", " +
                      std::to_string(sweep.rounds) + " rounds; the baseline’s output is " + escaped(sweep.output) +
-                     ".</p>\n</div>\n</header>\n" + choices_of(sweep, pictures) + "<header>\n<div>\n";
+                     ".</p>\n</div>\n</header>\n" + quality_of(sweep, pictures) + "<header>\n<div>\n";
   text += "<p>What a user sees is judged by <b>" + std::string(text_of(Judge::truth)) +
           "</b>, path traced in double precision" + samples_text(sweep.truth) +
           "; numerical settings by <b>the converged lighting model</b>" + samples_text(sweep.model) +
@@ -147,12 +147,12 @@ std::string knob_section(const Sweep& sweep, const PagePictures& pictures, const
 
 // The front by the reference that is not the judge.
 std::string other_section(const Sweep& sweep, const PagePictures& pictures) {
-  const Judge other = sweep.judge == Judge::truth ? Judge::model : Judge::truth;
+  const Judge other = other_than(sweep.judge);
   if (!has_judged(sweep, other)) return "";
   return std::string("<h2>The front by ") + text_of(other) + "</h2>\n<p>The same pictures, judged by " +
          text_of(other) + ": " +
          (other == Judge::model ? "the numerical error of the model alone" : "the distance to the truth") + ".</p>\n" +
-         pair(plot_figure(pictures, std::string("front_") + name_of(other)), front_table(sweep, other));
+         pair(plot_figure(pictures, front_plot_name(sweep, other)), front_table(sweep, other));
 }
 
 // States the price of the screen's format: the error of the baseline's picture in each.
@@ -225,8 +225,9 @@ std::string page_of(const Sweep& sweep, const PagePictures& pictures) {
                      answer_of(sweep) + pair(price_table(sweep), plot_figure(pictures, "price"));
   text += "<h2>The front: the least error for the time</h2>\n<p>Judged by " + std::string(text_of(sweep.judge)) +
           ". No measured configuration is both faster and more accurate, as far as the reference can tell: in order of "
-          "time, a setting joins the front if it is nearer than the one before by twice the standard error of their "
-          "difference. <code>--budget-ms</code> and <code>--flip-max</code> choose from it.</p>\n" +
+          "time, a setting joins the front if it is nearer than the one before by a hundredth of the error and twice "
+          "the standard "
+          "error of their difference. <code>--budget-ms</code> and <code>--flip-max</code> choose from it.</p>\n" +
           pair(plot_figure(pictures, "front"), front_table(sweep, sweep.judge)) + format_section(sweep);
   text += other_section(sweep, pictures) + methods_section(sweep, pictures);
   std::string links;

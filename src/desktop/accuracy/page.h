@@ -10,7 +10,7 @@ namespace pocketray {
 // Pictures of the page by name: strips by knob, plots by their own name. Missing ones are omitted.
 struct PagePictures {
   std::string reference_png, truth_png;        // bytes
-  std::map<std::string, std::string> choices;  // bytes of PNG, by level
+  std::map<std::string, std::string> quality;  // bytes of PNG, by level
   std::map<std::string, std::string> strips;   // bytes of PNG
   std::map<std::string, std::string> plots;    // text of SVG, as gnuplot writes it
 };

@@ -38,8 +38,8 @@ figcaption { color: var(--soft); font-size: .85rem; }
 .scale { display: inline-block; width: 8rem; height: .7rem; vertical-align: middle; border-radius: 2px; }
 .tiles { display: grid; grid-template-columns: repeat(auto-fill, minmax(15rem, 1fr)); gap: 0 1rem; }
 .tiles img { display: block; width: 100%; border-radius: 4px; image-rendering: pixelated; }
-.choices { grid-template-columns: repeat(auto-fill, minmax(10.5rem, 1fr)); }
-.choices code { overflow-wrap: anywhere; }
+.quality { grid-template-columns: repeat(auto-fill, minmax(10.5rem, 1fr)); }
+.quality code { overflow-wrap: anywhere; }
 table { border-collapse: collapse; font-variant-numeric: tabular-nums; font-size: .92rem; }
 th, td { padding: .3rem .6rem .3rem 0; text-align: left; vertical-align: top; border-bottom: 1px solid var(--line); }
 td { white-space: nowrap; }

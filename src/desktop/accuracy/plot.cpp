@@ -60,8 +60,12 @@ bool has_price(const Sweep& sweep, const KnobFigures& knob) {
 
 }  // namespace
 
+std::string front_plot_name(const Sweep& sweep, Judge judge) {
+  return judge == sweep.judge ? "front" : std::string("front_") + name_of(judge);
+}
+
 Plot front_plot(const Sweep& sweep, Judge judge) {
-  const std::string plot_name = judge == sweep.judge ? "front" : std::string("front_") + name_of(judge);
+  const std::string plot_name = front_plot_name(sweep, judge);
   std::vector<double> times, errors;
   for (const Measured& m : sweep.measured)
     if (is_judged(m, judge))

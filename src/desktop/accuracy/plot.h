@@ -5,8 +5,10 @@
 
 namespace pocketray {
 
+// Name of the plot of the front: "front" by the sweep's judge, otherwise "front_physical" or "front_model".
+std::string front_plot_name(const Sweep& sweep, Judge judge);
 // ꟻLIP over time of all configurations, the Pareto front as a line with labels numbered from 1, and the reference's own
-// error: "front" by the sweep's judge, otherwise "front_physical" or "front_model".
+// error.
 Plot front_plot(const Sweep& sweep, Judge judge);
 // ꟻLIP against full light transport over time, the front of each method of indirect light as a line.
 Plot method_plot(const Sweep& sweep);

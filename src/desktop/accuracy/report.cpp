@@ -22,15 +22,22 @@ std::string read_file(const std::string& path) {
   return bytes;
 }
 
+// The picture that the strip's knob is judged by.
+const Levels& reference_of(const Sweep& sweep, const Strip& strip) {
+  for (const KnobFigures& knob : sweep.knobs)
+    if (knob.name == strip.knob && knob.judge == Judge::truth) return sweep.truth_picture;
+  return sweep.reference_picture;
+}
+
 Status write_strips(const std::string& folder, const Sweep& sweep, const WriteFile& write, PagePictures* pictures) {
   if (!sweep.reference_picture.rgb.empty())
     RETURN_IF_ERROR(encode_png(sweep.reference_picture, &pictures->reference_png));
   if (!sweep.truth_picture.rgb.empty()) RETURN_IF_ERROR(encode_png(sweep.truth_picture, &pictures->truth_png));
-  for (const LevelPicture& choice : sweep.choices)
-    RETURN_IF_ERROR(encode_png(choice.picture, &pictures->choices[choice.level]));
+  for (const LevelPicture& level : sweep.quality)
+    RETURN_IF_ERROR(encode_png(level.picture, &pictures->quality[level.level]));
   for (const Strip& strip : sweep.strips) {
     std::string* png = &pictures->strips[strip.knob];
-    RETURN_IF_ERROR(encode_png(draw_strip(sweep.reference_picture, strip), png));
+    RETURN_IF_ERROR(encode_png(draw_strip(reference_of(sweep, strip), strip), png));
     RETURN_IF_ERROR(write(folder + "/strip_" + file_word(strip.knob) + ".png", *png));
   }
   return success();
@@ -57,7 +64,7 @@ Status write_report(const std::string& folder, const Sweep& sweep, const WriteFi
   PagePictures pictures;
   RETURN_IF_ERROR(write_strips(folder, sweep, write, &pictures));
   std::vector<Plot> plots = {front_plot(sweep, sweep.judge), price_plot(sweep)};
-  const Judge other = sweep.judge == Judge::truth ? Judge::model : Judge::truth;
+  const Judge other = other_than(sweep.judge);
   if (has_judged(sweep, other)) plots.push_back(front_plot(sweep, other));
   if (methods_of(sweep).size() > 1) plots.push_back(method_plot(sweep));
   for (const KnobFigures& knob : sweep.knobs) plots.push_back(knob_plot(sweep, knob));

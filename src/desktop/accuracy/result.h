@@ -21,6 +21,7 @@ constexpr const char* kJudgeNames[] = {"physical", "model"};
 constexpr const char* kJudgeTexts[] = {"full light transport", "the converged lighting model"};
 inline const char* name_of(Judge judge) { return kJudgeNames[static_cast<int>(judge)]; }
 inline const char* text_of(Judge judge) { return kJudgeTexts[static_cast<int>(judge)]; }
+inline Judge other_than(Judge judge) { return judge == Judge::truth ? Judge::model : Judge::truth; }
 
 // ꟻLIP between a picture and one reference.
 struct Distance {
@@ -119,7 +120,7 @@ struct Sweep {
   std::vector<Measured> measured;                                   // the baseline first
   std::vector<KnobFigures> knobs;
   std::vector<Strip> strips;
-  std::vector<LevelPicture> choices;  // by level, the least accurate first; empty: there is no front
+  std::vector<LevelPicture> quality;  // by level, the least accurate first; empty: there is no front
   std::vector<std::string> notes;     // one line each: skipped knobs and why, …
 };
 

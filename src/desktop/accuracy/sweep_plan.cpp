@@ -79,6 +79,14 @@ bool is_planned(const SweepPlan& plan, const Configuration& configuration) {
   return std::any_of(plan.points.begin(), plan.points.end(), is_same);
 }
 
+// Returns the knobs that can change from frame to frame.
+std::vector<const Knob*> setting_knobs() {
+  std::vector<const Knob*> knobs;
+  for (const Knob& knob : knob_list())
+    if (knob.is_setting) knobs.push_back(&knob);
+  return knobs;
+}
+
 // Returns the baseline with the settings that the knobs control taken from `settings`.
 SweepPoint several(const Configuration& baseline, const Settings& settings, const std::vector<const Knob*>& knobs) {
   Configuration wanted = baseline;
@@ -113,9 +121,7 @@ void add_methods(const std::function<Status(const Settings&)>& can_be_had, doubl
                  const std::function<EffectMask(const Settings&)>& effects_with, SweepPlan* plan) {
   const Settings baseline = plan->points[0].configuration.settings;
   const SettingRow& choice = *find_setting("indirect");
-  std::vector<const Knob*> knobs;
-  for (const Knob& knob : knob_list())
-    if (knob.is_setting) knobs.push_back(&knob);
+  const std::vector<const Knob*> knobs = setting_knobs();
   std::vector<EffectMask> done;
   auto add_method = [&](double value) {
     Settings settings = baseline;
@@ -165,9 +171,8 @@ SweepPlan plan_sweep(const std::string& scene, const EffectPlan& effects, const 
       plan.notes.push_back(std::string(knob.name) + " is skipped: " + why);
   }
   add_covering_set(baseline, price_limit, &plan);
-  std::vector<const Knob*> swept;
-  for (const SweptKnob& each : plan.knobs) swept.push_back(each.knob);
-  for (const Settings& settings : ladder) add_settings(settings, swept, can_be_had, kLadderLimit * price_limit, &plan);
+  for (const Settings& settings : ladder)
+    add_settings(settings, setting_knobs(), can_be_had, kLadderLimit * price_limit, &plan);
   if (!effects_with) return plan;
   add_methods(can_be_had, price_limit, effects_with, &plan);
   for (SweepPoint& point : plan.points) point.indirect = name_of_method(effects_with(point.configuration.settings));

@@ -14,7 +14,7 @@ constexpr double kFlipExponent = 0.7;
 constexpr std::uint32_t kRegionColumns = 8, kRegionRows = 6;
 
 std::vector<float> half_flips(const ReferencePictures& p, std::uint32_t width, std::uint32_t height, double ppd) {
-  std::vector<float> flips = flip_errors(encoded_light(p.one), encoded_light(p.other), width, height, ppd);
+  std::vector<float> flips = flip_errors(p.encoded_one, p.encoded_other, width, height, ppd);
   for (float& flip : flips) flip *= static_cast<float>(std::pow(0.5, kFlipExponent));
   return flips;
 }
@@ -29,6 +29,7 @@ void develop(const Accumulation& a, double exposure, double ppd, ReferencePictur
   p->one = exposed_light(one.data(), one.size(), factor);
   p->other = exposed_light(other.data(), other.size(), factor);
   p->mean = exposed_light(mean.data(), mean.size(), factor);
+  p->encoded_one = encoded_light(p->one), p->encoded_other = encoded_light(p->other);
   p->encoded = encoded_light(p->mean);
   p->levels = displayed_levels(mean.data(), a.width, a.height, factor, kOutputFormats[find_output_format("rgb888")]);
   p->samples = samples_of(a);

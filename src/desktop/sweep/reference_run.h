@@ -5,11 +5,11 @@
 namespace pocketray {
 
 struct ReferencePictures {
-  std::vector<double> one, other, mean;  // exposed light, clamped to the display range [0, 1]
-  std::vector<float> encoded;            // of the mean
-  Levels levels;                         // of the mean, 8 bits per channel
-  double rmse = 0, flip = 0;             // the mean's own error
-  std::uint64_t samples = 0;             // per pixel, both halves together
+  std::vector<double> one, other, mean;                    // exposed light, clamped to the display range [0, 1]
+  std::vector<float> encoded_one, encoded_other, encoded;  // as sRGB
+  Levels levels;                                           // of the mean, 8 bits per channel
+  double rmse = 0, flip = 0;                               // the mean's own error
+  std::uint64_t samples = 0;                               // per pixel, both halves together
 };
 
 // Makes the pictures of an accumulation, at the rig's exposure.

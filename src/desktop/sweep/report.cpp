@@ -78,9 +78,9 @@ void print_front(const Sweep& sweep) {
 }  // namespace
 
 Json sweep_json(const Sweep& sweep) {
-  Json measured = Json::array(), knobs = Json::array(), choices = Json::array();
-  for (const LevelPicture& c : sweep.choices)
-    choices.push_back({{"level", c.level}, {"settings", c.settings}, {"ms", c.ms}, {"flip", c.flip}});
+  Json measured = Json::array(), knobs = Json::array(), quality = Json::array();
+  for (const LevelPicture& c : sweep.quality)
+    quality.push_back({{"level", c.level}, {"settings", c.settings}, {"ms", c.ms}, {"flip", c.flip}});
   for (const Measured& m : sweep.measured) measured.push_back(measured_json(m));
   for (const KnobFigures& k : sweep.knobs)
     knobs.push_back({{"name", k.name},
@@ -101,7 +101,7 @@ Json sweep_json(const Sweep& sweep) {
           {"truth", reference_json(sweep.truth)},
           {"model", reference_json(sweep.model)},
           {"model_distance", {{"flip", sweep.model_distance}, {"rmse", sweep.model_rmse}}},
-          {"choices", choices},
+          {"quality", quality},
           {"notes", sweep.notes},
           {"knobs", knobs},
           {"measured", measured}};
@@ -115,7 +115,7 @@ void print_sweep(const Sweep& sweep) {
                 figures_of(sweep, judge).samples, figures_of(sweep, judge).flip, figures_of(sweep, judge).rmse);
   std::printf("  the converged model differs from full light transport by ꟻLIP %.3g, RMSE %.3g\n", sweep.model_distance,
               sweep.model_rmse);
-  for (const LevelPicture& c : sweep.choices)
+  for (const LevelPicture& c : sweep.quality)
     std::printf("  --quality %-7s %9.2f ms  ꟻLIP %.4f  %s\n", c.level.c_str(), c.ms, c.flip, c.settings.c_str());
   for (const KnobFigures& k : sweep.knobs) print_knob(sweep, k);
   print_front(sweep);

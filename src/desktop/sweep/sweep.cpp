@@ -105,8 +105,8 @@ Status find_levels(const SweepRun& run, Rig* rig, const Configuration& configura
 // *noise receives what the reference's noise adds to the mean ꟻLIP.
 Distance distance_of(const ReferencePictures& reference, const std::vector<float>& shown, std::uint32_t width,
                      std::uint32_t height, double ppd, double* noise) {
-  const std::vector<float> against_one = flip_errors(encoded_light(reference.one), shown, width, height, ppd);
-  const std::vector<float> against_other = flip_errors(encoded_light(reference.other), shown, width, height, ppd);
+  const std::vector<float> against_one = flip_errors(reference.encoded_one, shown, width, height, ppd);
+  const std::vector<float> against_other = flip_errors(reference.encoded_other, shown, width, height, ppd);
   const double against_mean = mean_of(flip_errors(reference.encoded, shown, width, height, ppd));
   Distance d;
   d.flip = without_noise(against_mean, mean_of(against_one), mean_of(against_other));
@@ -291,7 +291,7 @@ Status render_references(SweepRun* run, Sweep* sweep, bool* whole) {
 }
 
 // Renders the pictures of the levels of quality.
-Status add_choices(SweepRun* run, const Front& measured, Sweep* sweep, bool* whole) {
+Status add_quality(SweepRun* run, const Front& measured, Sweep* sweep, bool* whole) {
   if (measured.count < 2 || sweep->judge != Judge::truth) return success();
   Front front = measured;
   show_24_bits(&front);
@@ -306,10 +306,10 @@ Status add_choices(SweepRun* run, const Front& measured, Sweep* sweep, bool* who
     RETURN_IF_ERROR(time_frame(rig, configuration, run->options.seconds, &ns_per_pixel));
     *whole = !interrupted;
     if (!*whole) return success();
-    LevelPicture choice = {
+    LevelPicture level = {
         kQualityLevelNames[i], options_of(candidate), ms_of(*sweep, candidate.ns_per_pixel), candidate.flip, {}};
-    RETURN_IF_ERROR(find_levels(*run, rig, configuration, &choice.picture, nullptr));
-    sweep->choices.push_back(choice);
+    RETURN_IF_ERROR(find_levels(*run, rig, configuration, &level.picture, nullptr));
+    sweep->quality.push_back(level);
   }
   return success();
 }
@@ -379,7 +379,7 @@ Status measure_sweep(const AccuracyOptions& options, Sweep* sweep, bool* whole, 
   sum_up(run.plan, figures, sweep);
   const Front measured = front_of_sweep(run.plan, *sweep);
   if (front) *front = {measured, rig.front_path};
-  RETURN_IF_ERROR(add_choices(&run, measured, sweep, whole));
+  RETURN_IF_ERROR(add_quality(&run, measured, sweep, whole));
   if (!*whole) return success();
   for (const SweptKnob& swept : run.plan.knobs) {
     RETURN_IF_ERROR(add_strip(&run, swept, sweep, whole));
