@@ -11,6 +11,7 @@
 #include "platform/standard_streams.h"
 #include "session/interrupt.h"
 #include "session/output.h"
+#include "session/quality_dial.h"
 #include "session/report.h"
 #include "session/servers.h"
 #include "viewer/picker.h"
@@ -25,6 +26,7 @@ struct Loading {
   std::unique_ptr<OpenScene> opened = std::make_unique<OpenScene>();
   Status status;
   OpenFront front;
+  QualityDial dial;
   std::atomic<bool> done{false};
   std::thread thread;
 
@@ -32,7 +34,8 @@ struct Loading {
       : servers(viewer->servers), thread([this, &options, &budget, viewer] {
           status = chooses_settings(budget)
                        ? open_scene_with_front(options, front_source(budget, false), viewer_bytes, opened.get(), &front)
-                       : open_scene_with(servers, options, viewer_bytes, opened.get());
+                   : servers ? open_scene_with(servers, options, viewer_bytes, opened.get())
+                             : open_scene_with_dial(options, viewer_bytes, opened.get(), &dial);
           if (status.ok && servers)
             status = servers->backend->start(servers, &opened->renderer, viewer->format.bits_per_pixel == 16,
                                              viewer->options.dither);
@@ -64,15 +67,16 @@ struct ViewCommand {
 };
 
 // Shows the loaded scene until the user quits or a reload is due.
-Status show(const ViewCommand& o, const Loading& loading, Viewer* viewer, bool* again) {
-  Renderer* renderer = &loading.opened->renderer;
-  print_notes(*loading.opened);
-  print_notes(loading.front);
+Status show(const ViewCommand& o, Loading* loading, Viewer* viewer, bool* again) {
+  Renderer* renderer = &loading->opened->renderer;
+  print_notes(*loading->opened);
+  print_notes(loading->front);
   Budget budget;
-  if (chooses_settings(o.budget)) start_budget(o.budget, loading.front, *renderer, 4096, &budget);
+  if (chooses_settings(o.budget)) start_budget(o.budget, loading->front, *renderer, 4096, &budget);
   viewer->budget = chooses_settings(o.budget) ? &budget : nullptr;
-  viewer->focus = loading.opened->source.focus;
-  viewer->material_names = loading.opened->source.material_names;
+  viewer->dial = viewer->budget || viewer->servers ? nullptr : &loading->dial;
+  viewer->focus = loading->opened->source.focus;
+  viewer->material_names = loading->opened->source.material_names;
   if (!o.side_by_side.reference.empty())
     viewer->side_by_side =
         o.parts.side_by_side->open(o.side_by_side, *renderer, viewer->format.bits_per_pixel, o.view.dither);
@@ -86,6 +90,7 @@ Status show(const ViewCommand& o, const Loading& loading, Viewer* viewer, bool* 
     viewer->side_by_side->backend->close(viewer->side_by_side);
   }
   viewer->budget = nullptr;
+  viewer->dial = nullptr;
   viewer->side_by_side = nullptr;
   return status;
 }
@@ -118,7 +123,7 @@ bool load_and_show(const ViewCommand& o, const std::string& news, Viewer* viewer
   *status = loading.status;
   if (status->ok) *status = check_log(o, *loading.opened);
   if (status->ok && !news.empty()) tell(viewer, news.c_str());
-  if (status->ok) *status = show(o, loading, viewer, again);
+  if (status->ok) *status = show(o, &loading, viewer, again);
   return true;
 }
 
@@ -262,21 +267,22 @@ void add_view_command(Command program, const OptionalParts& parts, int* exit_sta
   command.add_option("--frames", o->view.frame_count, "exit after N frames; 0: run until quit").capture_default_str();
   command.add_option("--screenshots", o->view.screenshot_folder, "folder for screenshots; created if missing")
       .capture_default_str();
-  command.footer(std::string("Keys, with a device's buttons in brackets:\n"
-                             "  arrows [pad]          turn the camera\n"
-                             "  X, Z [A, B]           move nearer, farther\n"
-                             "  Q, W [L, R]           move left, right\n"
-                             "  right shift [select]  switch between orbit and fly\n"
-                             "  return [start]        restore the scene's camera, and let --budget-ms choose again\n"
-                             "  page up, page down    step through the settings of --budget-ms\n"
-                             "  S [X]                 pause\n"
-                             "  F1, A [Y]             toggle the overlay\n") +
-                 (parts.side_by_side ? "  V                     toggle the reference of --side-by-side\n" : "") +
-                 "  N                     play the next animation, or none\n"
-                 "  T                     dim the pixels that the last frame did not retrace\n"
-                 "  F12                   save a screenshot\n"
-                 "  F5                    reload the scene\n"
-                 "  Esc [start + select]  quit");
+  command.footer(
+      std::string("Keys, with a device's buttons in brackets:\n"
+                  "  arrows [pad]          turn the camera\n"
+                  "  X, Z [A, B]           move nearer, farther\n"
+                  "  Q, W [L, R]           move left, right\n"
+                  "  right shift [select]  switch between orbit and fly\n"
+                  "  return [start]        restore the scene's camera, and let --budget-ms choose again\n"
+                  "  +, - [select + pad]   raise or lower the quality, or step through the settings of --budget-ms\n"
+                  "  S [X]                 pause\n"
+                  "  F1, A [Y]             toggle the overlay\n") +
+      (parts.side_by_side ? "  V                     toggle the reference of --side-by-side\n" : "") +
+      "  N                     play the next animation, or none\n"
+      "  T                     dim the pixels that the last frame did not retrace\n"
+      "  F12                   save a screenshot\n"
+      "  F5                    reload the scene\n"
+      "  Esc [start + select]  quit");
   command.callback([=] { *exit_status = run(*o); });
 }
 

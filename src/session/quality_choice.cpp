@@ -35,18 +35,30 @@ void find_levels(const std::string& scene, const SceneSource& source, Renderer* 
   }
 }
 
+Status find_level_settings(const CommonOptions& o, const SceneSource& source, Renderer* renderer,
+                           Quality (&settings)[kQualityLevelCount]) {
+  Settings given;
+  RETURN_IF_ERROR(read_settings(o, &given));
+  LevelMeaning levels[kQualityLevelCount];
+  find_levels(o.scene, source, renderer, levels);
+  for (int level = 0; level < kQualityLevelCount; ++level) {
+    Settings all = with_candidate(given, levels[level].candidate);
+    for (int i = 0; i < kSettingCount; ++i)
+      if (is_given(o.settings.options[i], kSettingList[i], given))
+        kSettingList[i].field.set(&all, kSettingList[i].field.get(given));
+    settings[level] = all;
+  }
+  return success();
+}
+
 Status set_quality(const CommonOptions& o, const SceneSource& source, Renderer* renderer) {
   if (o.quality.empty()) return success();
   QualityLevel level;
   if (!find_quality_level(o.quality.c_str(), &level))
     return failure("--quality is '%.60s': it must be draft, low, medium, high or best", o.quality.c_str());
-  LevelMeaning levels[kQualityLevelCount];
-  find_levels(o.scene, source, renderer, levels);
-  const Settings read = renderer->settings;
-  renderer->settings = with_candidate(read, levels[static_cast<int>(level)].candidate);
-  for (int i = 0; i < kSettingCount; ++i)
-    if (is_given(o.settings.options[i], kSettingList[i], read))
-      kSettingList[i].field.set(&renderer->settings, kSettingList[i].field.get(read));
+  Quality levels[kQualityLevelCount];
+  RETURN_IF_ERROR(find_level_settings(o, source, renderer, levels));
+  static_cast<Quality&>(renderer->settings) = levels[static_cast<int>(level)];
   return success();
 }
 

@@ -14,6 +14,10 @@ struct LevelMeaning {
 void find_levels(const std::string& scene, const SceneSource& source, Renderer* renderer,
                  LevelMeaning (&levels)[kQualityLevelCount]);
 
+// Settings of each level, except those given on the command line. The renderer must hold the scene.
+Status find_level_settings(const CommonOptions& options, const SceneSource& source, Renderer* renderer,
+                           Quality (&settings)[kQualityLevelCount]);
+
 // Sets what --quality asks for, except the settings given on the command line.
 Status set_quality(const CommonOptions& options, const SceneSource& source, Renderer* renderer);
 
