@@ -64,9 +64,11 @@ double frame_ms(const Renderer& renderer, const LevelMeaning& level) {
 }
 
 void print_levels(const Renderer& renderer, const Levels& levels) {
-  std::printf("--quality, %s\n", levels[0].is_measured
-                                     ? "as `pocketray accuracy` measured this scene (ꟻLIP to full light transport)"
-                                     : "built in; `pocketray accuracy` measures what this scene gains from each");
+  std::printf("--quality, %s\n",
+              !levels[0].is_measured ? "built in; `pocketray accuracy` measures what this scene gains from each"
+              : levels[0].is_priced  ? "as `pocketray accuracy` measured this scene (ꟻLIP to full light transport)"
+                                     : "as `pocketray accuracy` measured this scene, with times of another machine or "
+                                       "number of threads; `bench --front` measures those of this one");
   for (int i = 0; i < kQualityLevelCount; ++i) {
     char change[kFrontLineMax];
     describe_change(Quality(), levels[i].candidate, change, sizeof change);
@@ -87,6 +89,7 @@ Json levels_json(const Renderer& renderer, const Levels& levels) {
     list.push_back({{"level", kQualityLevelNames[i]},
                     {"settings", settings},
                     {"measured", is_measured},
+                    {"priced_here", levels[i].is_priced},
                     {"ms", is_measured ? Json(frame_ms(renderer, levels[i])) : Json()},
                     {"flip", is_measured ? Json(levels[i].candidate.flip) : Json()}});
   }

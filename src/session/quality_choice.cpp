@@ -15,12 +15,13 @@ bool is_given(const SettingOption& option, const SettingRow& row, const Settings
 
 void find_levels(const std::string& scene, const SceneSource& source, Renderer* renderer,
                  LevelMeaning (&levels)[kQualityLevelCount]) {
-  Front front;
+  CachedFront cached;
   ContentHash identity;
-  bool there = false;
-  const bool is_measured = identify_scene(source, renderer, &identity).ok &&
-                           read_front(front_path(scene, identity), &front, &there).ok && front.count > 1 &&
-                           errors_known(front);
+  if (identify_scene(source, renderer, &identity).ok)
+    cached = read_cached_front(scene, identity, machine_name(renderer->pace.device, renderer->settings.threads));
+  Front& front = cached.front;
+  const bool is_measured = front.count > 1 && errors_known(front);
+  const bool is_priced = is_measured && adopt_prices(&front, cached.prices);
   Settings automatic = renderer->settings;
   automatic.indirect = IndirectChoice::automatic;
   const EffectMask effects = plan_effects(renderer->scene, automatic).mask;
@@ -31,7 +32,7 @@ void find_levels(const std::string& scene, const SceneSource& source, Renderer* 
     alone.candidates[alone.count++] =
         is_measured ? level_of(front, level) : candidate_of(builtin_level(level, effects));
     drop_what_scene_ignores(&alone, effects);
-    levels[i] = {alone.candidates[0], is_measured};
+    levels[i] = {alone.candidates[0], is_measured, is_priced};
   }
 }
 

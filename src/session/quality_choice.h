@@ -8,6 +8,7 @@ namespace pocketray {
 struct LevelMeaning {
   Candidate candidate;       // with its error and price if it is measured
   bool is_measured = false;  // a point of the scene's front in the cache; otherwise built in
+  bool is_priced = false;    // on this machine, emulated or not; otherwise where the front was measured
 };
 
 // Reads the levels of a scene between load_scene() and plan_renderer(), for which `renderer` holds it.

@@ -44,6 +44,7 @@ int lead(AccuracyOptions options) {
               sweep.judge == Judge::truth;
   if (kept) {
     Status written = cache_front(front.path, front.front);
+    if (written.ok) written = cache_front(front.prices_path, prices_alone(front.front));
     kept = written.ok;
     if (!kept) std::fprintf(stderr, "pocketray: %s; prices are not kept\n", written.message);
   }

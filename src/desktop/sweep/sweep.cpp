@@ -378,7 +378,7 @@ Status measure_sweep(const AccuracyOptions& options, Sweep* sweep, bool* whole, 
   sweep->rounds = run.state.rounds;
   sum_up(run.plan, figures, sweep);
   const Front measured = front_of_sweep(run.plan, *sweep);
-  if (front) *front = {measured, rig.front_path};
+  if (front) *front = {measured, rig.front_path, rig.prices_path};
   RETURN_IF_ERROR(add_quality(&run, measured, sweep, whole));
   if (!*whole) return success();
   for (const SweptKnob& swept : run.plan.knobs) {
