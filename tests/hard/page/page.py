@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""page.py LINES PAGE: makes the page of the hard cases from the lines that their tests wrote (support/hard_case.h).
+"""page.py LINES NAMES PAGE: makes the page of the hard cases from the lines that their tests wrote (support/hard_case.h)
+and the names of all tests: suite TAB name.
 
 Every figure is measured; rows.py has only titles and pictures. The page stands alone: no scripts, no other files.
 """
@@ -80,16 +81,30 @@ class Case:
     wrong: int
     bound: str
     seconds: float
+    share: float = 1
     beside: list = field(default_factory=list)
+
+    @property
+    def ran(self):
+        return self.inputs > 0
 
 
 def read_case(line):
     name, inputs, wrong, bound, seconds, *rest = line.rstrip("\n").split("\t")
-    case = Case(name, int(inputs), int(wrong), bound, float(seconds))
+    case = Case(name, int(inputs), int(wrong), bound, float(seconds), float(rest[1]) if len(rest) > 1 else 1)
     for text in rest[0].split(";") if rest and rest[0] else []:
         method, answer, count, bad, took, our_bad, our_took = text.split("|")
         case.beside.append(Beside(method, answer, int(count), int(bad), float(took), int(our_bad), float(our_took)))
     return case
+
+
+def read_cases(lines, names):
+    """All cases by name; those without a line have no inputs. Returns them and the suite of each."""
+    suites = dict(reversed(line.rstrip("\n").split("\t")) for line in names)
+    cases = {name: Case(name, 0, 0, "did not run", 0) for name in suites}
+    for case in map(read_case, lines):
+        cases[case.name] = case
+    return list(cases.values()), suites
 
 
 def row_of(case):
@@ -114,6 +129,8 @@ def nanoseconds(seconds, inputs):
 
 
 def count_text(wrong, inputs):
+    if inputs == 0:
+        return '<span class="wrong"><b>did not run</b></span>'
     kind = "wrong" if wrong else "right"
     return f'<span class="{kind}"><b>{grouped(wrong)}</b> wrong</span> of {grouped(inputs)}'
 
@@ -142,8 +159,11 @@ def our_times_html(cases):
 
 def tests_html(cases):
     lines = "".join(f"<div>{html.escape(c.name)}: {grouped(c.wrong)} of {grouped(c.inputs)}, {html.escape(c.bound)}, "
-                    f"{c.seconds:.1f} s</div>" for c in cases)
-    return f"<details><summary>{len(cases)} test{'s' if len(cases) > 1 else ''}</summary>{lines}</details>"
+                    f"{c.seconds:.1f} s</div>" if c.ran else
+                    f'<div class="wrong">{html.escape(c.name)} did not run</div>' for c in cases)
+    ran = sum(c.ran for c in cases)
+    count = f"{len(cases)} test{'s' if len(cases) > 1 else ''}"
+    return f"<details><summary>{count if ran == len(cases) else f'{ran} of {count} ran'}</summary>{lines}</details>"
 
 
 def row_html(number, title, answer, picture, cases):
@@ -166,26 +186,49 @@ def machine():
     return (html.escape(names[0]) + ", " if names else "") + f"{os.cpu_count()} threads"
 
 
-def head_html(cases):
+def share_html(cases):
+    shares = sorted({c.share for c in cases if c.ran})
+    if shares == [1]:
+        return "The full run"
+    text = [f"{100 * s:.3g} %" for s in shares]
+    return f"A run of {text[0] if len(text) == 1 else f'{text[0]} to {text[-1]}'} of the full run’s inputs, where these are many"
+
+
+def missing_html(cases, suites):
+    missing = [c.name for c in cases if not c.ran]
+    if not missing:
+        return ""
+    by_suite = {}
+    for name in missing:
+        by_suite.setdefault(suites.get(name, ""), []).append(name)
+    lists = "".join(f"<div>test_{html.escape(suite)}: {html.escape(', '.join(names))}</div>"
+                    for suite, names in sorted(by_suite.items()))
+    return (f'<p class="answer"><b class="wrong">{len(missing)} of {len(cases)} tests did not run</b> or did not finish; '
+            f"their rows lack answers.</p>\n<details><summary>which</summary>{lists}</details>\n")
+
+
+def head_html(cases, suites):
     inputs, wrong = sum(c.inputs for c in cases), sum(c.wrong for c in cases)
     beside = [b for c in cases for b in c.beside]
-    rows = {row_of(c) for c in cases} - {None}
+    rows = {row_of(c) for c in cases if c.ran} - {None}
+    ran = sum(c.ran for c in cases)
     text = ("<h1>Hard cases</h1>\n<p>Inputs that break ordinary ray tracers: what they are, how often the program is wrong, "
             "and what ordinary methods make of equal inputs.</p>\n"
             f'<p class="answer"><b class="{"wrong" if wrong else "right"}">{grouped(wrong)} wrong answers</b> to '
-            f"{grouped(inputs)} inputs of {len(cases)} tests in {len(rows)} rows")
+            f"{grouped(inputs)} inputs")
     if beside:
         text += (f"; ordinary methods gave <b class=\"wrong\">{grouped(sum(b.wrong for b in beside))}</b> to "
                  f"{grouped(sum(b.inputs for b in beside))}")
-    return text + (f'.</p>\n<p class="soft">{machine()}; {sum(c.seconds for c in cases):.0f} s in all. Times are CPU times of '
+    return text + (f'. <b>{ran} of {len(cases)} tests</b> ran, in {len(rows)} rows.</p>\n{missing_html(cases, suites)}<p class="soft">{share_html(cases)}, on {machine()}, in '
+                   f'{sum(c.seconds for c in cases):.0f} s. Times are CPU times of '
                    "one thread and hold only beside each other. Inputs are aimed at the weak spots: shares of wrong answers say nothing "
                    "about ordinary scenes.</p>\n")
 
 
-def page_html(cases):
+def page_html(cases, suites):
     text = ('<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
             '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
-            f"<title>Hard cases</title>\n<style>{STYLE}</style>\n</head>\n<body>\n" + head_html(cases) +
+            f"<title>Hard cases</title>\n<style>{STYLE}</style>\n</head>\n<body>\n" + head_html(cases, suites) +
             "<table>\n<thead><tr><th></th><th>case, right answer</th><th></th><th>ours</th><th>ordinary methods</th></tr></thead>\n")
     by_row = {}
     for case in cases:
@@ -210,16 +253,16 @@ def page_html(cases):
 
 
 def main():
-    if len(sys.argv) != 3:
+    if len(sys.argv) != 4:
         print(__doc__, file=sys.stderr)
         return 2
-    with open(sys.argv[1], encoding="utf-8") as file:
-        cases = [read_case(line) for line in file]
-    if not cases:
+    with open(sys.argv[1], encoding="utf-8") as lines, open(sys.argv[2], encoding="utf-8") as names:
+        cases, suites = read_cases(lines, names)
+    if not any(case.ran for case in cases):
         print("page.py: no hard case was run", file=sys.stderr)
         return 1
-    with open(sys.argv[2], "w", encoding="utf-8") as file:
-        file.write(page_html(cases))
+    with open(sys.argv[3], "w", encoding="utf-8") as file:
+        file.write(page_html(cases, suites))
     return 0
 
 
