@@ -19,15 +19,19 @@ page() { python3 -B "$here/page/page.py" lines names page.html; }
 printf 'hard_01_a\t1000\t0\t0 misses\t1.5\t\nhard_01_b\t200\t0\ta < b & c\t0.1\tplain|ray|200|3|4e-06|0|1e-06\ndifferential_x\t5\t0\tbits\t0.0\t\n' >lines
 printf 'base\thard_01_a\nbase\thard_01_b\nscene\tdifferential_x\n' >names
 check made page
-check totals grep -q '0 wrong answers</b> to 1.205 inputs; .* <b>3 of 3 tests</b> ran, in 1 rows' page.html
+check totals grep -q '0 wrong answers</b> to 1.205 inputs</a>; .* <b>3 of 3 tests</b> ran, in 1 rows' page.html
 check whole grep -q 'The full run, on' page.html
 check complete test -z "$(grep 'did not run' page.html)"
 check row grep -q '0</b> wrong</span> of 1.200<' page.html
 check share grep -q '1.5 % wrong' page.html
-check our_time grep -q '5.0 ns <small>for a ray, 0 wrong of 200' page.html
-check time grep -q '<span>20.0 ns</span>' page.html
+check our_time grep -q '5.0 ns</a> <small>for a ray, 0 wrong of 200' page.html
+check time grep -q '20.0 ns</a></span>' page.html
+check linked grep -q '<a href="page.csv#row=4">20.0 ns</a>' page.html
+check csv_method grep -qx 'hard_01_b,200,,,,1,plain,ray,3,20,0,5' <(sed -n 4p page.csv)
+check row_linked grep -q '<a href="page.csv#row=2;3"><span class="right"><b>0</b> wrong' page.html
+check csv_case grep -qx 'hard_01_b,200,0,a < b & c,0.1,1,,,,,,' <(sed -n 3p page.csv)
 check escaped grep -q 'a &lt; b &amp; c' page.html
-check alone test -z "$(grep -E '<script|src=|href=|url\(|@import' page.html)"
+check alone test -z "$(grep -oE '<script|src=|href=.[^#]*|url\(|@import' page.html | grep -vx 'href=.page.csv')"
 check well_formed python3 - page.html <<'P'
 import html.parser, sys
 open_tags = []
