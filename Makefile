@@ -43,7 +43,7 @@ endif
 BUILD := $(if $(CROSS_PREFIX),build-$(CLASS)-$(notdir $(CROSS_PREFIX:%-=%)),build$(CLASS:%=-%))
 POCKETRAY := $(BUILD)/pocketray
 
-.PHONY: all run setup-tests test test-box hardcases softfloat mutants trials faults demo-split split-table motion-table fuzz flips bench bench-embree bench-povray bench-device contact-sheet mach-bands rooms package format tidy clean install help setup configure
+.PHONY: all run setup-tests test test-box hardcases pages softfloat mutants trials faults demo-split split-table motion-table fuzz flips bench bench-embree bench-povray bench-device contact-sheet mach-bands rooms package format tidy clean install help setup configure
 all: configure
 	cmake --build $(BUILD) -j$(JOBS)$(if $(CLASS), --target pocketray)
 ifneq ($(CLASS),)
@@ -93,6 +93,12 @@ test-box: configure
 hardcases: setup-tests configure
 	@JSON=$(if $(JSON),$(abspath $(JSON))) SHARE=$(SHARE) SUITES="$(SUITES)" \
 	  cmake --build $(BUILD) -j$(JOBS) --target hardcases
+
+# The pages that the program writes, in Chromium; screenshots stay in the build folder's pages/.
+pages: configure
+	@toolchains/setup.sh pages
+	cmake --build $(BUILD) -j$(JOBS) --target pocketray
+	cd $(BUILD) && ctest --output-on-failure -R '^pages$$'
 
 softfloat: setup-tests configure
 	@cmake --build $(BUILD) -j$(JOBS) --target softfloat
@@ -275,6 +281,7 @@ help:
 	@echo "make softfloat    compare the arithmetic for CPUs without FPU with this CPU's, 10^9 pairs of floats"
 	@echo "make hardcases    run every hard case in full and write $(BUILD)/hardcases.html (JSON=FILE: also write JSON;"
 	@echo "                  SHARE=0.01: a share of the inputs; SUITES='hard shade': just these, keeping other suites' results)"
+	@echo "make pages        look at the pages of \`pocketray accuracy\` and of the hard cases in Chromium, about 300 MB"
 	@echo "make mutants      apply deliberate faults, one at a time: do the tests notice? (MUTANTS=--list: names,"
 	@echo "                  MUTANTS='--only x': just that one, JSON=FILE: also write JSON)"
 	@echo "make trials       extend a copy of the sources by one entry of each list and test it (TRIALS='lobe device': some)"

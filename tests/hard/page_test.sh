@@ -19,12 +19,12 @@ page() { python3 -B "$here/page/page.py" lines names page.html; }
 printf 'hard_01_a\t1000\t0\t0 misses\t1.5\t\nhard_01_b\t200\t0\ta < b & c\t0.1\tplain|ray|200|3|4e-06|0|1e-06\ndifferential_x\t5\t0\tbits\t0.0\t\n' >lines
 printf 'base\thard_01_a\nbase\thard_01_b\nscene\tdifferential_x\n' >names
 check made page
-check totals grep -q '0 wrong answers</b> to 1.205 inputs</a>; .* <b>3 of 3 tests</b> ran, in 1 rows' page.html
+check totals grep -q '0 wrong answers</b> to 1.205 inputs</a>; .*<b>3 of 3 tests</b></a> ran, in 1 rows' page.html
 check whole grep -q 'The full run, on' page.html
 check complete test -z "$(grep 'did not run' page.html)"
 check row grep -q '0</b> wrong</span> of 1.200<' page.html
 check share grep -q '1.5 % wrong' page.html
-check our_time grep -q '5.0 ns</a> <small>for a ray, 0 wrong of 200' page.html
+check our_time grep -q '5.0 ns</a> <small>for a ray, <a href="page.csv#row=4">0 wrong of 200<' page.html
 check time grep -q '20.0 ns</a></span>' page.html
 check linked grep -q '<a href="page.csv#row=4">20.0 ns</a>' page.html
 check csv_method grep -qx 'hard_01_b,200,,,,1,plain,ray,3,20,0,5' <(sed -n 4p page.csv)
@@ -58,7 +58,7 @@ check wrong_row grep -q 'class="wrong"><b>7</b> wrong</span> of 1.000' page.html
 printf 'hard_02_a\t1000\t0\t0 misses\t1.5\t\t0.01\nhard_02_b\t0\t0\tno model\t0\t\t0.01\n' >lines
 printf 'base\thard_02_a\nbase\thard_02_b\nscene\thard_02_c\nscene\thard_03_d\n' >names
 check made_incomplete page
-check ran grep -q '<b>1 of 4 tests</b> ran, in 1 rows' page.html
+check ran grep -q '<b>1 of 4 tests</b></a> ran, in 1 rows' page.html
 check missing grep -q '3 of 4 tests did not run</b>' page.html
 check which grep -q 'test_base: hard_02_b</div><div>test_scene: hard_02_c, hard_03_d</div>' page.html
 check in_row grep -q '<summary>1 of 3 tests ran</summary>' page.html
@@ -90,7 +90,7 @@ run_suites() { LINES_FILE=kept HTML=page.html bash "$here/hardcases.sh" "$folder
 SUITES=base SHARE=0.5 check alone_runs run_suites
 check alone_counted grep -q '^2 of 4 tests ran, 20 inputs, 0 wrong answers' table
 check alone_named grep -q '^not run: hard_03_scene of test_scene' table
-check alone_shown grep -q '<b>2 of 4 tests</b> ran' page.html
+check alone_shown grep -q '<b>2 of 4 tests</b></a> ran' page.html
 SUITES=scene check other_runs run_suites
 check both_counted grep -q '^4 of 4 tests ran, 40 inputs' table
 check both_shares grep -q 'A run of 50 % to 100 % of the full run' page.html

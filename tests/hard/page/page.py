@@ -114,7 +114,7 @@ def methods_html(cases, links):
     for b in beside:
         what = f", {answer_html(b.answer)}" if several else ""
         width = 0 if b.wrong == 0 else max(1.0, 100 * b.wrong / b.inputs)
-        text += (f'<div class="method"><span>{html.escape(b.method)}</span><span>{share(b.wrong, b.inputs)} wrong</span>'
+        text += (f'<div class="method"><span>{html.escape(b.method)}</span><span>{links.to([b], share(b.wrong, b.inputs) + " wrong")}</span>'
                  f'<span class="bar"><i style="width:{width:.1f}%"></i></span>'
                  f"<small>{links.to([b], f'{grouped(b.wrong)} of {grouped(b.inputs)}')}{what}</small>"
                  f"<span>{links.to([b], duration(b.seconds, b.inputs))}</span></div>")
@@ -126,8 +126,9 @@ def our_times_html(cases, links):
     for case in cases:
         for b in case.beside:
             if (case.name, b.answer) not in seen:
+                counts = f"{grouped(b.our_wrong)} wrong of {grouped(b.inputs)}"
                 text += (f"<div>{links.to([b], duration(b.our_seconds, b.inputs))} <small>for a {answer_html(b.answer)}, "
-                         f"{grouped(b.our_wrong)} wrong of {grouped(b.inputs)}</small></div>")
+                         f"{links.to([b], counts)}</small></div>")
             seen.add((case.name, b.answer))
     return text
 
@@ -193,7 +194,7 @@ def head_html(cases, suites, links):
     if beside:
         text += "; ordinary methods gave " + links.to(beside, f'<b class="wrong">{grouped(sum(b.wrong for b in beside))}</b> to '
                                                       f"{grouped(sum(b.inputs for b in beside))}")
-    return text + (f'. <b>{ran} of {len(cases)} tests</b> ran, in {len(rows)} rows.</p>\n{missing_html(cases, suites)}<p class="soft">{share_html(cases)}, on {machine()}, in '
+    return text + (f'. {links.to(cases, f"<b>{ran} of {len(cases)} tests</b>")} ran, in {len(rows)} rows.</p>\n{missing_html(cases, suites)}<p class="soft">{share_html(cases)}, on {machine()}, in '
                    f'{sum(c.seconds for c in cases):.0f} s. Times are CPU times of '
                    "one thread and hold only beside each other. Inputs are aimed at the weak spots: shares of wrong answers say nothing "
                    "about ordinary scenes.</p>\n")
