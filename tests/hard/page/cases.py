@@ -55,7 +55,8 @@ def row_of(case):
     return int(found[1]) if found else None
 
 
-HEADER = ["case", "inputs", "wrong", "bound", "seconds", "share", "method", "answer", "method_wrong", "method_ns", "our_wrong", "our_ns"]
+HEADER = ["case", "inputs", "wrong", "bound", "seconds", "share", "method", "answer", "method_wrong", "method_ns", "our_wrong",
+          "our_ns"]
 
 
 def write_csv(path, cases):

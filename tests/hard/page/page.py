@@ -194,10 +194,11 @@ def head_html(cases, suites, links):
     if beside:
         text += "; ordinary methods gave " + links.to(beside, f'<b class="wrong">{grouped(sum(b.wrong for b in beside))}</b> to '
                                                       f"{grouped(sum(b.inputs for b in beside))}")
-    return text + (f'. {links.to(cases, f"<b>{ran} of {len(cases)} tests</b>")} ran, in {len(rows)} rows.</p>\n{missing_html(cases, suites)}<p class="soft">{share_html(cases)}, on {machine()}, in '
-                   f'{sum(c.seconds for c in cases):.0f} s. Times are CPU times of '
-                   "one thread and hold only beside each other. Inputs are aimed at the weak spots: shares of wrong answers say nothing "
-                   "about ordinary scenes.</p>\n")
+    text += ". " + links.to(cases, f"<b>{ran} of {len(cases)} tests</b>") + f" ran, in {len(rows)} rows.</p>\n"
+    return text + missing_html(cases, suites) + (
+        f'<p class="soft">{share_html(cases)}, on {machine()}, in {sum(c.seconds for c in cases):.0f} s. Times are CPU times of one '
+        "thread and hold only beside each other. Inputs are aimed at the weak spots: shares of wrong answers say nothing about "
+        "ordinary scenes.</p>\n")
 
 
 def page_html(cases, suites, links):
