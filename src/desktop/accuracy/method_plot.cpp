@@ -20,7 +20,7 @@ Plot method_plot(const Sweep& sweep) {
       times.push_back(ms_of(sweep, m->ns_per_pixel.value)), errors.push_back(m->truth.flip);
   const double own = sweep.truth.flip;
   const Axis x = axis_of(times, 0, false), y = axis_of(errors, own, true);
-  const int key_bottom = 70 + 24 * static_cast<int>(methods.size()), height = 440 + key_bottom;
+  const int key_bottom = 86 + 28 * static_cast<int>(methods.size()), height = 440 + key_bottom;
   const PlotFrame frame = {0.16, 0.97, static_cast<double>(key_bottom) / height, 1 - 52.0 / height, height};
   std::string data, plots;
   std::vector<PlotPoint> points;
