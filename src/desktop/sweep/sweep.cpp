@@ -306,8 +306,12 @@ Status add_quality(SweepRun* run, const Front& measured, Sweep* sweep, bool* who
     RETURN_IF_ERROR(time_frame(rig, configuration, run->options.seconds, &ns_per_pixel));
     *whole = !interrupted;
     if (!*whole) return success();
-    LevelPicture level = {
-        kQualityLevelNames[i], options_of(candidate), ms_of(*sweep, candidate.ns_per_pixel), candidate.flip, {}};
+    LevelPicture level = {kQualityLevelNames[i],
+                          options_of(candidate),
+                          ms_of(*sweep, candidate.ns_per_pixel),
+                          candidate.flip,
+                          {},
+                          point_of_front(run->plan, *sweep, candidate)};
     RETURN_IF_ERROR(find_levels(*run, rig, configuration, &level.picture, nullptr));
     sweep->quality.push_back(level);
   }
