@@ -26,11 +26,13 @@ int run(const std::string& path) {
 
 void add_keygen_command(Command program, int* exit_status) {
   auto path = std::make_shared<std::string>("pocketray.key");
-  Command command = program.add_subcommand("keygen", "make a key that encrypts links between devices and servers");
-  command.add_option("-o", *path, "file to write; one that exists is never overwritten").capture_default_str();
-  command.footer(
+  Command command = program.add_subcommand("keygen", "make a key that encrypts links to render servers");
+  command.chapter("Output");
+  command.add_option("-o,--output FILE", *path, "file to write; one that exists is never overwritten")
+      .capture_default_str();
+  command.about(
       "The file has one line, pocketray-key-1: and 64 hexadecimal digits: 256 random bits. Whoever has them can use "
-      "the\n"
+      "the "
       "server and read what it sends, so its mode is 0600; copy it by a way that you trust, such as scp or a card.");
   command.callback([=] { *exit_status = run(*path); });
 }

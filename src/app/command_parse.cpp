@@ -1,0 +1,272 @@
+// Parsing of command lines: every refusal names the option and the cure.
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+
+#include "app/command_spec.h"
+#include "base/nearest_word.h"
+
+namespace pocketray {
+namespace {
+
+// Thrown by parsing, caught by CommandLine::parse(): the message, and whether usage or a value is wrong.
+struct Refusal {
+  std::string text;
+  bool is_usage;
+};
+
+[[noreturn]] void refuse_usage(const std::string& text) { throw Refusal{text, true}; }
+[[noreturn]] void refuse_value(const std::string& text) { throw Refusal{text, false}; }
+
+// At most 60 bytes of a word, for a message.
+std::string cut(const std::string& word) {
+  std::size_t count = std::min<std::size_t>(word.size(), 60);
+  while (count > 0 && count < word.size() && (static_cast<unsigned char>(word[count]) & 0xc0) == 0x80) --count;
+  return word.substr(0, count) + (count < word.size() ? "…" : "");
+}
+
+std::string quoted(const std::string& word) { return "'" + cut(word) + "'"; }
+
+bool is_help(const std::string& word) { return word == "--help" || word == "-h"; }
+bool is_help_all(const std::string& word) { return word == "--help-all"; }
+
+bool looks_like_option(const std::string& word) { return word.size() > 1 && word[0] == '-'; }
+
+std::string name_of(const std::string& word) { return word.substr(0, word.find('=')); }
+
+bool is_option(const CommandSpec& command, const std::string& word) {
+  return looks_like_option(word) && (find_option(command, name_of(word)) || is_help(word) || is_help_all(word));
+}
+
+std::vector<std::string> option_names(const CommandSpec& command) {
+  std::vector<std::string> names = {"--help", "--help-all"};
+  if (!command.commands.empty()) names.push_back("--version");
+  for (const auto& option : command.options)
+    if (!option->is_hidden && !option->is_positional)
+      names.insert(names.end(), option->names.begin(), option->names.end());
+  return names;
+}
+
+std::vector<std::string> command_names(const CommandSpec& program) {
+  std::vector<std::string> names;
+  for (const auto& command : program.commands) names.push_back(command->name);
+  return names;
+}
+
+[[noreturn]] void refuse_option(const CommandSpec& program, const CommandSpec& command, const std::string& word) {
+  const std::string name = name_of(word);
+  std::string cure = suggestion(name, option_names(command));
+  for (const auto& other : program.commands)
+    if (cure.empty() && other.get() != &command && find_option(*other, name))
+      cure = " in " + command.name + ", but in " + other->name;
+  refuse_usage("there is no option " + cut(name) + cure);
+}
+
+const CommandSpec& named_command(const CommandSpec& program, const std::string& word) {
+  if (const CommandSpec* command = find_command(program, word)) return *command;
+  refuse_usage("there is no command " + quoted(word) + suggestion(word, command_names(program)));
+}
+
+void check_choice(const OptionSpec& option, const std::string& text) {
+  const std::vector<std::string>& choices = option.choices;
+  if (choices.empty() || std::find(choices.begin(), choices.end(), text) != choices.end()) return;
+  const std::string near = suggestion(text, choices), must = "must be " + allowed_values(option);
+  refuse_value(option.names[0] + " is " + quoted(text) + (near.empty() ? ": it " + must : near + " It " + must));
+}
+
+void check_number(const OptionSpec& option, const std::string& text) {
+  const double value = std::strtod(text.c_str(), nullptr);
+  const std::string range = allowed_values(option);
+  if (option.has_range && !(value >= option.low && value <= option.high))
+    refuse_value(option.names[0] + " is " + cut(text) + ": it must lie in " + range);
+}
+
+[[noreturn]] void refuse_form(const OptionSpec& option, const std::string& text) {
+  const std::string range = option.has_range ? " in " + allowed_values(option) : "";
+  refuse_value(option.names[0] + " is " + quoted(text) + ": it must be a " +
+               (option.kind == ValueKind::whole_number ? "whole number" : "finite number") + range);
+}
+
+void store(OptionSpec* option, const std::string& text) {
+  if (text.empty()) refuse_value(option->names[0] + " must not be empty");
+  check_choice(*option, text);
+  if (option->kind == ValueKind::whole_number || option->kind == ValueKind::number) {
+    const bool is_number = std::isfinite(std::strtod(text.c_str(), nullptr));
+    if (!option->store(text)) {
+      // A number that is too large for the variable is beyond the range as well.
+      if (is_number && text.find_first_not_of("-+0123456789") == std::string::npos) check_number(*option, text);
+      refuse_form(*option, text);
+    }
+    check_number(*option, text);
+  }
+  for (const auto& check : option->checks)
+    if (const std::string refusal = check(text); !refusal.empty())
+      refuse_value(option->names[0] + " is " + quoted(text) + ": it " + refusal);
+  if (option->kind == ValueKind::text) option->store(text);
+}
+
+class Parser {
+ public:
+  Parser(const CommandSpec& program, CommandSpec* command, const std::vector<std::string>& words)
+      : program_(program), command_(command), words_(words) {}
+
+  // Returns help if it is asked for.
+  std::string parse(const TextStyle& style) {
+    for (bool options_ended = false; at_ < words_.size();) {
+      const std::string& word = words_[at_++];
+      if (options_ended || !looks_like_option(word)) {
+        take_positional(word);
+      } else if (word == "--") {
+        options_ended = true;
+      } else if (is_help(word)) {
+        return help(style);
+      } else if (is_help_all(word)) {
+        return command_help(*command_, true, style);
+      } else {
+        take_option(word);
+      }
+    }
+    check_presence();
+    return "";
+  }
+
+ private:
+  std::string help(const TextStyle& style) const {
+    if (at_ >= words_.size()) return command_help(*command_, false, style);
+    const std::string& word = words_[at_];
+    const OptionSpec* option = find_option(*command_, word);
+    if (!option) option = find_option(*command_, "--" + word);
+    if (option) return option_help(*command_, *option, style);
+    if (looks_like_option(word)) refuse_option(program_, *command_, word);
+    return command_help(*command_, false, style);
+  }
+
+  std::size_t missing_positionals() const {
+    std::size_t count = 0;
+    for (const auto& option : command_->options)
+      count += option->is_positional && option->is_required && !option->count;
+    return count;
+  }
+
+  void take_positional(const std::string& word) {
+    std::string takes;
+    for (const auto& option : command_->options) {
+      if (!option->is_positional) continue;
+      if (option->count == 0) {
+        ++option->count;
+        return pocketray::store(option.get(), word);
+      }
+      takes += (takes.empty() ? "" : " and ") + option->names[0];
+    }
+    refuse_usage(quoted(word) + " is one argument too many: " + full_name(*command_) + " takes " +
+                 (takes.empty() ? "options only" : takes));
+  }
+
+  // Takes the next word as a further value unless it is an option or the place of a positional argument.
+  bool take_next(OptionSpec* option) {
+    if (at_ >= words_.size() || looks_like_option(words_[at_]) || words_.size() - at_ <= missing_positionals())
+      return false;
+    pocketray::store(option, words_[at_++]);
+    return true;
+  }
+
+  void take_option(const std::string& word) {
+    const bool is_long = word.compare(0, 2, "--") == 0;
+    const std::string name = is_long ? name_of(word) : word.substr(0, 2);
+    OptionSpec* option = find_option(*command_, name);
+    // "-output" is no value of -o
+    if (!option || (!is_long && word.size() > 2 && find_option(*command_, "-" + name_of(word))))
+      refuse_option(program_, *command_, word);
+    if (++option->count > 1 && !option->is_list) refuse_usage(name + " is given twice: give it once");
+    const bool is_attached = word.size() > name.size();
+    const std::string attached = is_attached ? word.substr(name.size() + (word[name.size()] == '=')) : "";
+    if (option->kind == ValueKind::flag) {
+      if (is_attached) refuse_usage(name + " takes no value, here " + quoted(attached));
+      option->store("");
+    } else if (is_attached) {
+      pocketray::store(option, attached);
+    } else if (option->value_is_optional) {
+      take_next(option);
+    } else {
+      if (at_ >= words_.size() || is_option(*command_, words_[at_])) {
+        const std::string allowed = allowed_values(*option);
+        refuse_usage(name + " needs a value: " + name + " " + option->placeholder +
+                     (allowed.empty() ? "" : ", " + allowed));
+      }
+      pocketray::store(option, words_[at_++]);
+      while (option->is_list && !option->one_value_each && take_next(option)) continue;
+    }
+  }
+
+  void check_presence() const {
+    for (const auto& option : command_->options) {
+      if (option->is_required && option->count == 0)
+        refuse_usage(command_->name + " needs " + option->names[0] +
+                     (option->is_positional ? "" : " " + option->placeholder) + ": " + option->help);
+      if (option->count == 0) continue;
+      for (const OptionSpec* other : option->needs)
+        if (other->count == 0) refuse_usage(option->names[0] + " needs " + other->names[0] + ": add it");
+      for (const Exclusion& exclusion : option->excludes)
+        if (exclusion.other->count > 0)
+          refuse_usage(option->names[0] + " excludes " + exclusion.other->names[0] + ": " + exclusion.because +
+                       "; drop one of them");
+    }
+  }
+
+  const CommandSpec& program_;
+  CommandSpec* command_;
+  const std::vector<std::string>& words_;
+  std::size_t at_ = 0;
+};
+
+bool is_any_of(const std::string& word, std::initializer_list<const char*> words) {
+  return std::find(words.begin(), words.end(), word) != words.end();
+}
+
+// Help on the program, on one of its commands or on an option of that.
+std::string help_on(const CommandSpec& program, const std::vector<std::string>& words, const TextStyle& style) {
+  if (words.empty()) return program_help(program, false, style);
+  if (is_help_all(words[0])) return program_help(program, true, style);
+  if (is_any_of(words[0], {"help", "version"})) return program_help(program, false, style);
+  const CommandSpec& command = named_command(program, words[0]);
+  if (words.size() < 2) return command_help(command, false, style);
+  if (is_help_all(words[1])) return command_help(command, true, style);
+  for (const std::string& name : {words[1], "--" + words[1]})
+    if (const OptionSpec* option = find_option(command, name)) return option_help(command, *option, style);
+  refuse_option(program, command, looks_like_option(words[1]) ? words[1] : "--" + words[1]);
+}
+
+}  // namespace
+
+std::string suggestion(const std::string& word, const std::vector<std::string>& names) {
+  NearestWord nearest(word.data(), word.size());
+  for (const std::string& name : names) nearest.offer(name.c_str());
+  return nearest.name() ? std::string(", did you mean '") + nearest.name() + "'?" : "";
+}
+
+ParseResult CommandLine::parse(const std::vector<std::string>& words) {
+  ParseResult result;
+  CommandSpec* command = program_.get();
+  std::vector<std::string> rest = words;
+  try {
+    if (!program_->commands.empty()) {
+      if (words.empty()) refuse_usage("name a command, as render or view; `" + program_->name + " help` lists them");
+      rest.erase(rest.begin());
+      if (is_help_all(words[0])) return result.help = program_help(*program_, true, style_), result;
+      if (is_help(words[0]) || words[0] == "help") return result.help = help_on(*program_, rest, style_), result;
+      if (is_any_of(words[0], {"version", "--version", "-V", "-v"})) return result.help = version_, result;
+      if (looks_like_option(words[0])) refuse_option(*program_, *program_, words[0]);
+      named_command(*program_, words[0]);
+      command = find_command(*program_, words[0]);
+    }
+    result.help = Parser(*program_, command, rest).parse(style_);
+  } catch (const Refusal& refusal) {
+    result.error = refusal.text;
+    result.usage = refusal.is_usage;
+    return result;
+  }
+  if (result.help.empty() && command->run) command->run();
+  return result;
+}
+
+}  // namespace pocketray
