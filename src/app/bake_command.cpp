@@ -158,7 +158,7 @@ int run(const BakeOptions& o) {
 
 void add_bake_command(Command program, int* exit_status) {
   auto options = std::make_shared<BakeOptions>();
-  Command command = program.add_subcommand("bake", "convert a model into one file for devices, .pray");
+  Command command = program.add_subcommand("bake", "convert a model into one .pray file for devices");
   command.add_option("IN", options->input, "a model (glTF, OBJ, PLY, STL, …) or a built-in scene").required();
   command.chapter("Output");
   command.add_option("-o,--output FILE", options->output, "the .pray file to write").required();
@@ -173,7 +173,7 @@ void add_bake_command(Command program, int* exit_status) {
       .details("compressed: blocks of 4 to 12 bits a texel instead of 32; their errors are printed.");
   command.add_flag("--no-mip-maps", options->no_mip_maps, "store no smaller levels of textures")
       .details("Textures then take a quarter less memory but sparkle where they appear small.");
-  command.add_option("--crease-angle DEGREES", options->model.crease_angle, "smooth edges below this angle")
+  command.add_option("--crease-angle N", options->model.crease_angle, "smooth edges below N degrees")
       .range(0, 180)
       .capture_default_str()
       .details("For models without normals, except glTF, where these are always flat.");

@@ -227,10 +227,10 @@ void add_bench_command(Command program, int* exit_status) {
   command.add_option("--frames N", *frames, "frames to measure, after one that warms up")
       .range(1, kFrameCountMax)
       .capture_default_str();
-  command.add_flag("--no-prices", *no_prices, "skip the price of each effect");
-  command.add_flag("--sparse", *sparse, "also the price of a pixel when few are traced")
+  command.add_flag("--no-prices", *no_prices, "do not measure each effect");
+  command.add_flag("--sparse", *sparse, "also measure pixels when few are traced")
       .details("2, 10, 50 and 100 % of the pixels, scattered and in patches.");
-  Option priced = command.add_option("--front [FILE]", *front, "only time the settings of --budget-ms, and save that")
+  Option priced = command.add_option("--front [FILE]", *front, "instead, measure and save prices for --budget-ms")
                       .details("In FILE, or in the scene's file in the cache. `render` and `view` choose from them.");
   add_json_option(command, &options->json);
   add_look_options(command, options.get(), {"--front"});

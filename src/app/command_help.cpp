@@ -9,8 +9,7 @@ namespace pocketray {
 namespace {
 
 constexpr std::size_t kEntryWidthMax = 24;  // wider entries have a line of their own
-constexpr const char* kExitStatus =
-    "Exit status: 0 done, 1 bad input, value or environment, 2 wrong usage, 3 interrupted.";
+constexpr const char* kExitStatus = "Exit status: 0 done, 1 bad input or environment, 2 wrong usage, 3 interrupted.";
 
 std::size_t width_of(const std::string& text) {
   return static_cast<std::size_t>(
@@ -73,15 +72,17 @@ std::string entry_name(const OptionSpec& option) {
   return name + " " + (option.value_is_optional ? "[" + option.placeholder + "]" : option.placeholder);
 }
 
-std::string description(const OptionSpec& option) {
-  const std::string allowed = allowed_values(option);
+// In full, or on one line: then without a range, and with its default in brackets.
+std::string description(const OptionSpec& option, bool in_full) {
+  const std::string allowed = allowed_values(option), &usual = option.default_text;
   std::string text = option.help;
-  if (!allowed.empty()) text += (option.choices.empty() ? ", " : ": ") + allowed;
-  if (!option.default_text.empty()) text += " (default " + option.default_text + ")";
-  return text;
+  if (!option.choices.empty()) text += ": " + allowed;
+  if (!in_full) return usual.empty() ? text : text + " [" + usual + "]";
+  const std::string range = option.choices.empty() ? allowed : "";
+  if (!range.empty() && !usual.empty()) return text + " (" + range + "; default " + usual + ")";
+  if (!usual.empty()) return text + " (default " + usual + ")";
+  return range.empty() ? text : text + " (" + range + ")";
 }
-
-using OptionList = std::vector<const OptionSpec*>;
 
 std::size_t name_width(const std::vector<EverydayGroup>& groups) {
   std::size_t width = 0;
@@ -100,11 +101,10 @@ std::vector<EverydayGroup> chapters_of(const CommandSpec& command, bool everythi
     if (found == chapters.end()) found = chapters.insert(chapters.end(), {title, {}});
     found->options.push_back(option);
   };
-  const bool by_chapter = everything || command.everyday.empty();
   for (const auto& option : command.options)
-    if (!option->is_hidden && (option->is_positional || by_chapter))
+    if (!option->is_hidden && (option->is_positional || everything))
       add(option->is_positional ? "" : option->chapter, option.get());
-  if (!by_chapter) chapters.insert(chapters.end(), command.everyday.begin(), command.everyday.end());
+  if (!everything) chapters.insert(chapters.end(), command.everyday.begin(), command.everyday.end());
   return chapters;
 }
 
@@ -132,15 +132,17 @@ void add_examples(const std::vector<std::string>& examples, Screen* screen) {
 void add_command(const CommandSpec& command, bool everything, Screen* screen) {
   screen->paragraph("", 0, usage_of(command));
   if (command.parent) screen->paragraph("", 0, sentence(command.help));
+  everything = everything || command.everyday.empty();
   const std::vector<EverydayGroup> chapters = chapters_of(command, everything);
   const std::size_t width = name_width(chapters);
   for (const EverydayGroup& chapter : chapters) {
     if (chapter.options.empty()) continue;
     if (chapter.heading.empty()) screen->line();
     if (!chapter.heading.empty()) screen->heading(chapter.heading);
-    for (const OptionSpec* option : chapter.options) screen->entry(entry_name(*option), width, description(*option));
+    for (const OptionSpec* option : chapter.options)
+      screen->entry(entry_name(*option), width, description(*option, everything));
   }
-  if (everything || command.everyday.empty())
+  if (everything)
     for (const std::string& paragraph : command.about) screen->line(), screen->paragraph("", 0, paragraph);
   if (!command.footer.empty()) screen->line(), screen->line(command.footer);
   add_examples(command.examples, screen);
@@ -162,7 +164,8 @@ std::string allowed_values(const OptionSpec& option) {
   if (!option.choices.empty()) return enumerated(option.choices, " or ");
   if (!option.has_range) return "";
   char text[64];
-  std::snprintf(text, sizeof text, "%.10g … %.10g", option.low, option.high);
+  const int digits = std::max(-option.low, option.high) < 1e8 ? 10 : 6;
+  std::snprintf(text, sizeof text, "%.*g … %.*g", digits, option.low, digits, option.high);
   return text;
 }
 
@@ -170,7 +173,7 @@ std::string program_help(const CommandSpec& program, bool everything, const Text
   Screen screen(style);
   screen.paragraph("", 0, program.help);
   screen.line();
-  screen.line("Usage: " + program.name + " COMMAND [options]");
+  screen.paragraph("", 0, "Usage: " + program.name + " COMMAND [options]");
   std::vector<std::string> groups;
   std::size_t width = 0;
   for (const auto& command : program.commands) {
@@ -183,7 +186,7 @@ std::string program_help(const CommandSpec& program, bool everything, const Text
       if (command->group == group) screen.entry(command->name, width, command->help);
   }
   screen.heading("Help");
-  screen.entry("help", width, "this list; help COMMAND: its everyday options; help COMMAND OPTION: one of them");
+  screen.entry("help", width, "this list; or help COMMAND, or help COMMAND OPTION");
   screen.entry("version", width, "the program's version, and those of its files and messages");
   add_examples(program.examples, &screen);
   screen.line();
@@ -199,15 +202,18 @@ std::string command_help(const CommandSpec& command, bool everything, const Text
   add_command(command, everything, &screen);
   screen.line();
   const std::string name = full_name(command);
-  if (everything || command.everyday.empty()) screen.paragraph("", 0, kExitStatus);
-  if (!everything && !command.everyday.empty()) screen.line("More options: " + name + " --help-all.");
-  screen.line("About one of them: " + name + " --help OPTION.");
+  if (everything || command.everyday.empty()) {
+    screen.paragraph("", 0, kExitStatus);
+  } else {
+    screen.paragraph("", 0, "All options, with their ranges: " + name + " --help-all");
+  }
+  screen.paragraph("", 0, "One option: " + name + " --help OPTION");
   return screen.text();
 }
 
 std::string option_help(const CommandSpec& command, const OptionSpec& option, const TextStyle& style) {
   Screen screen(style);
-  screen.line("Usage: " + full_name(command) + " … " + entry_name(option));
+  screen.paragraph("", 0, "Usage: " + full_name(command) + " … " + entry_name(option));
   screen.line();
   screen.paragraph("", 0, sentence(option.help));
   if (!option.details.empty()) screen.paragraph("", 0, option.details);

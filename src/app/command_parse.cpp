@@ -50,21 +50,26 @@ std::vector<std::string> option_names(const CommandSpec& command) {
 std::vector<std::string> command_names(const CommandSpec& program) {
   std::vector<std::string> names;
   for (const auto& command : program.commands) names.push_back(command->name);
+  for (const char* name : {"help", "version"}) names.push_back(name);
   return names;
 }
 
 [[noreturn]] void refuse_option(const CommandSpec& program, const CommandSpec& command, const std::string& word) {
   const std::string name = name_of(word);
+  const bool is_command = command.parent != nullptr;
   std::string cure = suggestion(name, option_names(command));
   for (const auto& other : program.commands)
     if (cure.empty() && other.get() != &command && find_option(*other, name))
-      cure = " in " + command.name + ", but in " + other->name;
+      cure = (is_command ? " in " + command.name : " before the command") + "; " + other->name + " has one";
+  if (cure.empty()) cure = "; `" + full_name(command) + " --help" + (is_command ? "-all" : "") + "` lists them";
   refuse_usage("there is no option " + cut(name) + cure);
 }
 
 const CommandSpec& named_command(const CommandSpec& program, const std::string& word) {
   if (const CommandSpec* command = find_command(program, word)) return *command;
-  refuse_usage("there is no command " + quoted(word) + suggestion(word, command_names(program)));
+  const std::string near = suggestion(word, command_names(program));
+  refuse_usage("there is no command " + quoted(word) +
+               (near.empty() ? "; `" + program.name + " help` lists them" : near));
 }
 
 void check_choice(const OptionSpec& option, const std::string& text) {
@@ -223,6 +228,12 @@ bool is_any_of(const std::string& word, std::initializer_list<const char*> words
   return std::find(words.begin(), words.end(), word) != words.end();
 }
 
+// Forgets what an earlier parsing counted.
+void forget_counts(CommandSpec* command) {
+  for (const auto& option : command->options) option->count = option->value_count = 0;
+  for (const auto& each : command->commands) forget_counts(each.get());
+}
+
 // Help on the program, on one of its commands or on an option of that.
 std::string help_on(const CommandSpec& program, const std::vector<std::string>& words, const TextStyle& style) {
   if (words.empty()) return program_help(program, false, style);
@@ -246,6 +257,7 @@ std::string suggestion(const std::string& word, const std::vector<std::string>& 
 
 ParseResult CommandLine::parse(const std::vector<std::string>& words) {
   ParseResult result;
+  forget_counts(program_.get());
   CommandSpec* command = program_.get();
   std::vector<std::string> rest = words;
   try {

@@ -59,14 +59,9 @@ std::string version_text() {
   std::string text = std::string("pocketray ") + POCKETRAY_VERSION + "\n.pray files, version " +
                      std::to_string(kBakedVersion) + " (reads " + std::to_string(kBakedVersionMin) + " and later)\n";
 #ifdef POCKETRAY_HAVE_NETWORK
-  text += "render servers, version " + std::to_string(kWireVersion) + "\n";
+  text += "render servers' protocol, version " + std::to_string(kWireVersion) + "\n";
 #endif
   return text;
-}
-
-// A refusal that suggests nothing refers to the help.
-const char* see_help(const std::string& error) {
-  return error.find("did you mean") == std::string::npos ? " (see --help)" : "";
 }
 
 int run_command(int argument_count, char** arguments, const Team& team) {
@@ -115,7 +110,7 @@ int run_command(int argument_count, char** arguments, const Team& team) {
   try {
     ParseResult parsed = line.parse({arguments + 1, arguments + argument_count});
     if (!parsed.error.empty()) {
-      print_note(parsed.error + (parsed.usage ? see_help(parsed.error) : ""));
+      print_note(parsed.error);
       return parsed.usage ? kExitUsage : kExitInput;
     }
     std::fputs(parsed.help.c_str(), stdout);

@@ -57,11 +57,12 @@ void add_setting_option(Command command, const SettingRow& row, SettingOption* o
 
 void add_quality(Command command, CommonOptions* o) {
   command.chapter("Speed and accuracy");
-  command.add_option("--quality LEVEL", o->quality, "the dial from fast to accurate")
+  command.add_option("--quality LEVEL", o->quality, "accuracy")
       .one_of({kQualityLevelNames, kQualityLevelNames + kQualityLevelCount})
       .default_str("medium")
       .details(
-          "Levels are points of the scene's front if `pocketray accuracy` measured it, and otherwise built in; "
+          "The dial between speed and accuracy. Levels are points of the scene's front if `pocketray accuracy` "
+          "measured it, and otherwise built in; "
           "`pocketray plan SCENE` shows what each means. Single settings, given besides, change it.")
       .price(measured_price("--quality"));
 }
@@ -70,8 +71,7 @@ void add_scene(Command command, CommonOptions* o, bool required) {
   Option scene = command.add_option("SCENE", o->scene, scene_help());
   if (required) scene.required();
   command.chapter("Picture");
-  command.add_option("--size WxH", o->size, "pixels of the picture")
-      .default_str("320x240, or the device's with --emulate");
+  command.add_option("--size WxH", o->size, "pixels of the picture").default_str("320x240, or the device's");
 }
 
 void add_effects(Command command, CommonOptions* o) {
@@ -101,7 +101,7 @@ void add_camera(Command command, CommonOptions* o) {
 }
 
 void add_exposure(Command command, CommonOptions* o) {
-  command.add_option("--exposure STOPS", o->exposure, "brighten by STOPS; auto: measure; fixed: as it is")
+  command.add_option("--exposure STOPS", o->exposure, "brightness in stops, auto or fixed")
       .default_str("the scene's")
       .details(
           "-60 … 60 stops, added to the scene's exposure, which is measured for imported models with lights. auto "
@@ -110,15 +110,16 @@ void add_exposure(Command command, CommonOptions* o) {
 
 void add_memory_and_devices(Command command, CommonOptions* o) {
   command.chapter("Memory and devices");
-  command.add_option("--memory SIZE", o->memory, "size of the memory block that holds everything")
+  command.add_option("--memory SIZE", o->memory, "size of the one memory block")
       .default_str("64M, or the device's")
       .details(
-          "Bytes, or K, M or G of them (24M, 24MB and 24MiB are equal), 64K … 64G. A system with less free memory has "
+          "It holds everything. Bytes, or K, M or G of them (24M, 24MB and 24MiB are equal), 64K … 64G. A system with "
+          "less free memory has "
           "a "
           "smaller default.");
-  command.add_option("--device NAME", o->device, "use a device's memory, and in view its buttons")
+  command.add_option("--device NAME", o->device, "use a device's memory size and, in view, its buttons")
       .details(all_device_names());
-  command.add_option("--emulate NAME", o->emulate, "run like a device: speed, memory, cores, screen")
+  command.add_option("--emulate NAME", o->emulate, "imitate a device's speed, memory, cores and screen")
       .details(all_device_names() + " Speeds are listed with their sources in platform/devices/README.md.");
   add_threads(command, o);
   add_isa_option(command, &o->isa);
@@ -130,10 +131,11 @@ void add_memory_and_devices(Command command, CommonOptions* o) {
     if (info->is_automatic)
       automatic += std::string(automatic.empty() ? ", else " : ", or if that does not fit, ") + info->name;
   }
-  command.add_option("--accel NAME", o->accel, "structure that finds what rays hit")
+  command.add_option("--accel NAME", o->accel, "accelerator")
       .one_of(accels)
       .capture_default_str()
-      .details(known + "auto: the one the scene was baked with" + automatic + ".");
+      .details("The structure that finds what rays hit. " + known + "auto: the one the scene was baked with" +
+               automatic + ".");
 }
 
 }  // namespace
@@ -144,7 +146,7 @@ Option add_json_option(Command command, std::string* path) {
 }
 
 Option add_isa_option(Command command, std::string* isa) {
-  return command.add_option("--isa NAME", *isa, "instruction set for tracing: baseline, avx2 or avx512")
+  return command.add_option("--isa NAME", *isa, "instruction set: baseline, avx2 or avx512")
       .default_str("the CPU's best");
 }
 
@@ -173,9 +175,10 @@ void add_view_options(Command command, CommonOptions* o) {
 void add_reading_options(Command command, ReadingChoice* choice) {
 #ifdef POCKETRAY_HAVE_IMPORT
   command.chapter("Models");
-  command.add_option("--up AXIS", choice->up, "the axis that points up in PLY, STL, OBJ and OFF")
+  command.add_option("--up AXIS", choice->up, "axis that points up")
       .one_of({"y", "z"})
-      .default_str("z in PLY and STL, else y");
+      .default_str("by format")
+      .details("In PLY, STL, OBJ and OFF, which do not tell: z in PLY and STL, y in the others.");
   command.add_flag("--strict", choice->strict,
                    "refuse vertices that are not finite; otherwise their faces are left out");
   command
@@ -196,7 +199,7 @@ void add_animation_option(Command command, std::string* name) {
 
 Option add_environment_option(Command command, std::string* name) {
   command.chapter("Light and background");
-  return command.add_option("--environment WHAT", *name, "light from all around: FILE, sky, studio, none")
+  return command.add_option("--environment WHAT", *name, "surrounding light: FILE, sky, studio, none")
       .default_str("the scene's")
       .details(
           "FILE is an equirectangular picture, .hdr, .png or .jpg. sky, or sky:ELEVATION,TURBIDITY, is a clear sky "
@@ -252,7 +255,7 @@ void add_budget_options(Command command, BudgetOptions* o) {
   command.chapter("Speed and accuracy");
   std::string names;
   for (const SettingRow& row : kSettingList) names += std::string(names.empty() ? "" : ", ") + row.name;
-  Option budget = command.add_option("--budget-ms MS", o->ms, "the least error in MS milliseconds a frame")
+  Option budget = command.add_option("--budget-ms MS", o->ms, "best settings that keep a frame within MS milliseconds")
                       .range(kBudgetMsMin, kBudgetMsMax)
                       .details("Chooses " + names +
                                ", and follows measured frame times. Prices are kept per scene and machine; see "
@@ -267,11 +270,12 @@ void add_budget_options(Command command, BudgetOptions* o) {
           .check([](const std::string& text) {
             return std::strtod(text.c_str(), nullptr) > 0 ? "" : "must be above 0 and at most 1";
           });
-  for (Option option : {budget, flip}) {
+  const std::pair<Option, const char*> choosers[] = {{budget, "--budget-ms"}, {flip, "--flip-max"}};
+  for (auto [option, name] : choosers) {
+    const std::string because = std::string(name) + " chooses the settings";
     for (const SettingRow& row : kSettingList)
-      option.excludes(command.get_option(std::string("--") + row.name),
-                      "one chooses the settings, the other states one");
-    option.excludes(command.get_option("--quality"), "both choose the settings");
+      option.excludes(command.get_option(std::string("--") + row.name), because);
+    option.excludes(command.get_option("--quality"), because);
   }
   command.add_option("--front FILE", o->front, "file of the settings to choose from")
       .default_str("the scene's, in the cache");

@@ -234,7 +234,7 @@ namespace {
 
 void add_sequence_options(Command command, RenderOptions* o) {
   command.chapter("Animation");
-  Option frames = command.add_option("--frames A:B", o->frames, "render the frames from A to B")
+  Option frames = command.add_option("--frames A:B", o->frames, "render frames A to B")
                       .details("Under mpirun, in a build with MPI, ranks share them.");
   command.add_option("--time SECONDS", o->seconds, "the animation's time, for a single frame")
       .range(-kSecondsMax, kSecondsMax)
@@ -242,12 +242,12 @@ void add_sequence_options(Command command, RenderOptions* o) {
   Option orbit = command.add_option("--orbit DEGREES", o->orbit_degrees, "orbit the camera by DEGREES per frame")
                      .range(-360, 360)
                      .capture_default_str();
-  command.add_option("--turntable N", o->turntable, "N frames once around the target")
+  command.add_option("--turntable N", o->turntable, "render N frames on a circle around the target")
       .range(2, kTurntableMax)
       .details("The scene's time stands still, at --time.")
       .excludes(frames, "a turntable has frames of its own")
       .excludes(orbit, "a turntable sets the angle between frames");
-  command.add_option("--fps N", o->frames_per_second, "frames per second, of the scene's time and of the file")
+  command.add_option("--fps N", o->frames_per_second, "frames per second of the scene's time and the file")
       .range(kAnimationRateMin, kAnimationRateMax)
       .default_str("the scene's");
   command.add_flag("--resume", o->resume, "skip frames that an earlier run has finished")
@@ -256,7 +256,7 @@ void add_sequence_options(Command command, RenderOptions* o) {
 
 void add_output_options(Command command, RenderOptions* o) {
   command.chapter("Output");
-  command.add_option("-o,--output FILE", o->output, ".png, .jpg, .gif, .mp4, … or -")
+  command.add_option("-o,--output FILE", o->output, "file to write: .png, .jpg, .gif, .mp4, …")
       .capture_default_str()
       .details(
           "A picture: .png, .jpg, .ppm, .pfm or .exr (linear radiance), or .raw (a framebuffer's bytes). Of several "

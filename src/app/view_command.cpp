@@ -231,16 +231,17 @@ int run(ViewCommand o) {
 
 void add_screen_options(Command command, ViewCommand* o) {
   command.chapter("Viewer");
-  command.add_option("--screen NAME", o->view.backend, "where to show it: sdl2, linux, null or auto")
+  command.add_option("--screen NAME", o->view.backend, "where to show it")
+      .one_of({"auto", "sdl2", "linux", "null"})
       .capture_default_str()
       .details(
           "sdl2 is a window, linux the framebuffer, null nothing, for tests; auto takes a window or the framebuffer, "
           "whichever there is.");
   command.add_option("--framebuffer FILE", o->view.device, "the framebuffer's device file").default_str("the system's");
-  command.add_option("--rotate DEGREES", o->view.rotation, "rotate the picture clockwise")
+  command.add_option("--rotate DEGREES", o->view.rotation, "rotation, clockwise")
       .one_of({"0", "90", "180", "270"})
       .default_str("the device's");
-  command.add_option("--scale N", o->view.scale, "screen pixels per picture pixel; 0: what fits")
+  command.add_option("--scale N", o->view.scale, "screen pixels per picture pixel; 0: the most that fit")
       .range(0, 64)
       .capture_default_str();
   command.add_flag("--dither", o->view.dither, "apply ordered dithering on 16-bit screens");

@@ -47,6 +47,7 @@ TEST_CASE("nearest_word_within_two_edits") {
                                   {"xon", "on"},
                                   {"xn", "on"},
                                   {"xx", ""},
+                                  {"o", ""},
                                   {"sparkle", ""},
                                   {"", ""},
                                   {"-", ""}};

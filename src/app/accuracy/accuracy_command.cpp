@@ -85,10 +85,13 @@ void add_accuracy_command(Command program, const Team& team, int* exit_status) {
       .range(-kSecondsMax, kSecondsMax)
       .capture_default_str();
   command.chapter("Measurement");
-  command.add_option("--rounds N", o->rounds, "times that each configuration is measured").capture_default_str();
+  command.add_option("--rounds N", o->rounds, "measurements of each configuration")
+      .range(1, 1000)
+      .capture_default_str();
   command
       .add_option("--price-limit X", o->price_limit,
                   "slowest combination of settings to try, as a multiple of the baseline's time")
+      .range(1, 1e6)
       .capture_default_str();
   command.add_flag("--count-instructions", o->starts_valgrind, "count instructions with valgrind")
       .details("Where the CPU does not count them; takes a minute or more, with many lights hours.");
@@ -100,6 +103,7 @@ void add_accuracy_command(Command program, const Team& team, int* exit_status) {
           "physical is full light transport, model the renderer's own lighting model, converged, FILE a picture of "
           "`pocketray reference`.");
   command.add_option("--reference-samples N", o->reference_samples, "samples per pixel of the judge")
+      .range(2, 1e6)
       .default_str("256; model: 2048");
   command.chapter("Output");
   command.add_option("-o,--output DIR", o->folder, "folder for the page, plots and tables").required();
@@ -107,10 +111,11 @@ void add_accuracy_command(Command program, const Team& team, int* exit_status) {
       .one_of({"rgb565", "rgb565-dithered", "rgb888"})
       .capture_default_str();
   command.add_option("--pixels-per-degree,--ppd X", o->pixels_per_degree, "pixels per degree of visual angle, for ꟻLIP")
+      .range(1, 1000)
       .capture_default_str();
   add_json_option(command, &o->common.json);
   command.add_option("--counting-folder DIR", o->counting_folder, "for the run under valgrind").hidden();
-  command.everyday("Output", {"--output", "--pixel-format", "--json"});
+  command.everyday("Output", {"--output", "--json"});
   command.everyday("Picture", {"--size", "--camera", "--time"});
   command.everyday("Reference", {"--reference", "--reference-samples"});
   command.everyday("Measurement", {"--rounds", "--threads", "--count-instructions", "--restart"});

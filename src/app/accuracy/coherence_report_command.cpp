@@ -190,14 +190,14 @@ void add_coherence_report_command(Command program, int* exit_status) {
   add_look_options(command, &o->common);
   command.chapter("Measurement");
   command.add_option("--frames A:B", o->frames, "frames to render; the first is traced whole").default_str("all");
-  command.add_option("--table N", o->table, "NxN blocks of pixels in each voxel's table")
+  command.add_option("--table N", o->table, "pixel blocks per side in each voxel's table")
       .range(1, kCoherenceTableSideMax)
       .capture_default_str()
       .details("Each block has a bit in every voxel's table of rays.");
-  command.add_flag("--no-paper", o->no_paper, "leave out the paper's way, half of the time");
+  command.add_flag("--no-paper", o->no_paper, "skip the paper's way, which takes half of the time");
   command.add_flag("--sweep-table", o->sweep_table, "also measure tables of 1 to 128 blocks a side")
       .details("Their memory, time and pixels traced; the pictures are equal.");
-  command.add_flag("--compare", o->compare, "also the image-space methods of Badt and Chapman");
+  command.add_flag("--compare", o->compare, "also run the image-space methods of Badt and Chapman");
   command.chapter("Output");
   command.add_option("-o,--output DIR", o->folder, "folder for the page, plots and tables")
       .details("index.html with plots and pictures, report.json and frames.csv. Created if missing.");
@@ -206,7 +206,7 @@ void add_coherence_report_command(Command program, int* exit_status) {
   command.everyday("Picture", {"--size", "--threads"});
   command.everyday("Measurement", {"--frames", "--no-paper", "--table", "--sweep-table", "--compare"});
   command.example("pocketray coherence-report seesaw -o report");
-  command.example("pocketray coherence-report seesaw --frames 0:40 --size 640x480 --no-paper --json -");
+  command.example("pocketray coherence-report seesaw --frames 0:40 --no-paper --json -");
   command.about(
       "Renders a sequence twice, frame by frame and by tracing only the pixels that can differ from the last frame, "
       "and "

@@ -130,13 +130,14 @@ void add_compare_command(Command program, int* exit_status) {
   command.add_option("A", o->reference, "the reference: .png, .jpg, .ppm, .pfm or .exr").required();
   command.add_option("B", o->test, "the picture to judge, of equal size").required();
   command.chapter("Comparison");
-  command.add_option("--exposure STOPS", o->exposure, "exposure of linear light; auto: middle grey")
-      .default_str("0, 1 is white")
+  command.add_option("--exposure STOPS", o->exposure, "exposure of linear light in stops, or auto")
+      .default_str("0")
       .details(
-          "Stops, by which light in .pfm and .exr is exposed. auto makes the geometric mean of A, or of B if only that "
+          "Of light in .pfm and .exr; 0 stops make radiance 1 white. auto makes the geometric mean of A, or of B if "
+          "only that "
           "is "
           "linear, middle grey.");
-  command.add_flag("--align", o->align, "scale the light of B to come close to A, and print by how much")
+  command.add_flag("--align", o->align, "scale the light of B to match A, and print the factor")
       .details("Of a single linear picture, finds the exposure.");
   command.add_option("--pixels-per-degree,--ppd X", o->pixels_per_degree, "pixels per degree of visual angle")
       .range(4, 400)
@@ -148,6 +149,11 @@ void add_compare_command(Command program, int* exit_status) {
       .range(0, 1)
       .default_str("never");
   add_json_option(command, &o->json);
+  command.everyday("Output", {"--map", "--fail-above", "--json"});
+  command.everyday("Comparison", {"--exposure", "--align", "--pixels-per-degree"});
+  command.footer(
+      "ꟻLIP is how different two pictures look: 0 for equal ones, .01 is hard to see,\n.05 seen at once, .2 another "
+      "picture.");
   command.example("pocketray compare expected.png out.png --map map.png --fail-above 0.01");
   command.example("pocketray compare reference.pfm out.exr --align");
   command.about(

@@ -156,9 +156,9 @@ void add_reference_command(Command program, const Team& team, int* exit_status) 
       .one_of({"model", "physical"})
       .capture_default_str()
       .details("model: the renderer's lighting model, converged. physical: full light transport.");
-  command.add_option("--samples N", c->goal.samples, "samples per pixel, of all parts together")
+  command.add_option("--samples N", c->goal.samples, "samples per pixel, of all parts")
       .range(2, kReferenceHalfCount * kReferenceSampleMax)
-      .default_str("2048; physical: 256")
+      .default_str("256; model: 2048")
       .details("With --until, there is no limit unless this option sets one.");
   command.add_option("--until X", c->goal.until, "stop when its own error is ꟻLIP X or less").range(1e-6, 1);
   command.add_option("--part K/N", c->part, "take only part K of N of the samples");

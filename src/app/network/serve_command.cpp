@@ -71,9 +71,8 @@ Status find_address(const ServeOptions& o, platform::LinkAddress* address) {
   if (!platform::kTcpLink.resolve(o.listen.c_str(), address, &error)) return failure("--listen: %s", error.text);
   if (address->loopback || o.insecure_lan || !o.key.empty()) return success();
   return failure(
-      "--listen %s is open to other machines and there is no authentication: anyone who reaches the port can use the "
-      "CPU and see the scenes. Give both sides a key (`pocketray keygen`, --key), listen on 127.0.0.1:7411 and connect "
-      "through an SSH tunnel, or trust the network with --insecure-lan",
+      "--listen %.60s: other machines can reach it and there is no authentication: add --key (`pocketray keygen`), or "
+      "--insecure-lan",
       o.listen.c_str());
 }
 
@@ -218,7 +217,9 @@ void add_serve_command(Command program, const Team& team, ServeOnRanks on_ranks,
   command.chapter("Link");
   command.add_option("--listen HOST:PORT", o->listen, "address; port 0: any free one")
       .capture_default_str()
-      .details("Addresses that other machines can reach need --key or --insecure-lan.");
+      .details(
+          "Addresses that other machines can reach need --key or --insecure-lan: otherwise anyone who reaches the port "
+          "could use the CPU and see the scenes. Instead, 127.0.0.1 can be reached through an SSH tunnel.");
   Option key = add_key_option(command, &o->key);
   command.chapter("Link");
   command.add_flag("--insecure-lan", o->insecure_lan, "serve other machines without a key")

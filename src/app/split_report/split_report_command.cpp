@@ -352,7 +352,7 @@ void add_split_report_command(Command program, int* exit_status) {
       .range(1, 1e9)
       .default_str("measured")
       .details("Otherwise that of one core here.");
-  command.add_flag("--no-paper", o->no_paper, "leave out the paper's table");
+  command.add_flag("--no-paper", o->no_paper, "skip the paper's table");
   command.chapter("Output");
   command.add_option("-o,--output DIR", o->folder, "folder for tables and plots; created if missing")
       .details("split.csv, fronts.csv and, if gnuplot is installed, split.png and fronts.png.");
