@@ -1,6 +1,7 @@
 #include "base/nearest_word.h"
 
 #include <algorithm>
+#include <climits>
 #include <cstring>
 
 #include "base/check.h"
@@ -38,13 +39,12 @@ int edit_cost(const char* a, std::size_t a_count, const char* b, std::size_t b_c
 
 }  // namespace
 
-NearestWord::NearestWord(const char* word, std::size_t byte_count) {
+NearestWord::NearestWord(const char* word, std::size_t byte_count) : cost_(INT_MAX) {
   CHECK(word != nullptr || byte_count == 0);
   skip_hyphens(&word, &byte_count);
   if (byte_count > kLetterMax) byte_count = 0;
   std::copy(word, word + byte_count, word_);
   count_ = byte_count;
-  cost_ = (count_ <= 1 ? static_cast<int>(count_) : count_ <= 3 ? 2 : 3) * kEditCost;
 }
 
 NearestWord::NearestWord(const char* word) : NearestWord(word, std::strlen(word)) {}
@@ -54,10 +54,12 @@ void NearestWord::offer(const char* name) {
   const char* letters = name;
   std::size_t letter_count = std::strlen(name);
   skip_hyphens(&letters, &letter_count);
+  const std::size_t shorter = std::min(count_, letter_count);
+  if (shorter == 0 || letter_count > kLetterMax) return;
+  const int edits_max = shorter == 1 ? 0 : shorter <= 3 ? 1 : 2;
   int rows[3][kLetterMax + 1];
-  if (letter_count > kLetterMax) return;
   const int cost = edit_cost(word_, count_, letters, letter_count, rows);
-  if (cost < cost_) cost_ = cost, nearest_ = name;
+  if (cost <= edits_max * kReplaceCost && cost < cost_) cost_ = cost, nearest_ = name;
 }
 
 }  // namespace pocketray

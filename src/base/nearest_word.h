@@ -5,7 +5,8 @@
 namespace pocketray {
 
 // Keeps the nearest of the names offered, the first of several, within two letters inserted, deleted, replaced or
-// swapped, one for a word of two or three letters, none for one letter. Ignores case and, at the front, hyphens.
+// swapped; within one if the word or the name has two or three letters, and none if it has one. Ignores case and, at
+// the front, hyphens.
 class NearestWord {
  public:
   NearestWord(const char* word, std::size_t byte_count);
@@ -18,7 +19,7 @@ class NearestWord {
   static constexpr std::size_t kLetterMax = 40;  // longer words have no neighbours
   char word_[kLetterMax] = {};
   std::size_t count_ = 0;
-  int cost_;  // of the edits that lead to the nearest name; before, of one edit more than allowed
+  int cost_;  // of the edits that lead to the nearest name
   const char* nearest_ = nullptr;
 };
 

@@ -15,7 +15,7 @@ struct Values {
   int signed_count = -1;
   std::uint32_t count = 1;
   float real = 0.5f;
-  double wide = 0.25;
+  double wide = 0.25, open = 0;
   bool flag = false;
   int runs = 0;
 };
@@ -33,6 +33,7 @@ struct Program {
     command.add_option("--count", values.count, "help on count").range(1, 5).capture_default_str();
     command.add_option("--real", values.real, "help on real").range(0, 1);
     command.add_option("--wide", values.wide, "help on wide").range(0, 1);
+    command.add_option("--open", values.open, "help on open, without a range");
     command.add_flag("--flag", values.flag, "help on flag");
     command.callback([this] { ++values.runs; });
   }
@@ -251,7 +252,7 @@ TEST_CASE("command_line_relates_options") {
 // Goal: no number is NaN or infinite, and no value empty. Method: such values for each type, where only reals refuse
 // "nan" by this rule; a flag has no value to check.
 TEST_CASE("command_line_refuses_meaningless_values") {
-  for (const char* option : {"--real", "--wide"})
+  for (const char* option : {"--real", "--wide", "--open"})
     for (const char* value : {"nan", "-nan", "inf", "-inf", "1e999"}) {
       CAPTURE(option);
       CAPTURE(value);

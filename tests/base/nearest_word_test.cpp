@@ -13,7 +13,7 @@ using namespace pocketray;
 
 namespace {
 
-const char* const kNames[] = {"cornell", "statue", "pi-zero", "--size", "--samples", "on", "off", "auto"};
+const char* const kNames[] = {"cornell", "statue", "pi-zero", "--size", "--samples", "up", "on", "off", "auto"};
 
 const char* suggested(const std::string& word) {
   NearestWord nearest(word.data(), word.size());
@@ -48,6 +48,7 @@ TEST_CASE("nearest_word_within_two_edits") {
                                   {"xn", "on"},
                                   {"xx", ""},
                                   {"o", ""},
+                                  {"jump", ""},
                                   {"sparkle", ""},
                                   {"", ""},
                                   {"-", ""}};
