@@ -49,6 +49,7 @@ TEST_CASE("nearest_word_within_two_edits") {
                                   {"xx", ""},
                                   {"o", ""},
                                   {"jump", ""},
+                                  {"no", "on"},
                                   {"sparkle", ""},
                                   {"", ""},
                                   {"-", ""}};
