@@ -5,7 +5,7 @@ set -eu
 
 # Required packages of each group. "command=package" is installed if the command exists; a plain name is a Debian package.
 required() {
-  local common="cmake=cmake make=make doctest-dev nlohmann-json3-dev"
+  local common="cmake=cmake make=make doctest-dev libcli11-dev nlohmann-json3-dev"
   case $1 in
     desktop) echo $common c++=g++ pkg-config=pkg-config zlib1g-dev ;;
     tests | ci) ;;
