@@ -142,12 +142,17 @@ int run(const CommonOptions& options, bool prices) {
 void add_plan_command(Command program, int* exit_status) {
   auto options = std::make_shared<CommonOptions>();
   auto prices = std::make_shared<bool>(false);
-  Command command = program.add_subcommand("plan", "show which effects a scene needs, why, and its memory map");
+  Command command = program.add_subcommand("plan", "show which effects a scene needs, why, and its memory");
   add_scene_options(command, options.get());
   add_look_options(command, options.get());
   add_coherence_options(command, options.get());
+  command.chapter("Output");
+  command.add_flag("--prices", *prices, "also render it and print what each effect costs here");
   add_json_option(command, &options->json);
-  command.add_flag("--prices", *prices, "also render it and print the cost of each effect on this machine");
+  command.everyday("Picture", {"--size", "--quality", "--effects", "--environment"});
+  command.everyday("Device", {"--memory", "--device", "--accel"});
+  command.everyday("Output", {"--prices", "--json"});
+  command.example("pocketray plan seesaw --device miyoo-mini");
   command.callback([=] { *exit_status = run(*options, *prices); });
 }
 
