@@ -96,7 +96,7 @@ Status bake(const BakeOptions& o) {
   RETURN_IF_ERROR(check_not_read(heap.files, {{"-o", o.output}, {"--json", o.json}}));
   if (interrupted) return failure("interrupted: nothing is written");
   SolvedRadiosity solved;
-  if (o.radiosity) RETURN_IF_ERROR(solve_scene(o.input, std::thread::hardware_concurrency(), &scene, &solved));
+  if (o.radiosity) RETURN_IF_ERROR(solve_scene(o.input, {std::thread::hardware_concurrency()}, &scene, &solved));
   double solve_ms = static_cast<double>(clock_ns() - start) * 1e-6;
   CompressedTextures compressed;
   if (o.textures == "compressed") compress_textures(&scene, &compressed);
