@@ -12,6 +12,9 @@ struct SolvedRadiosity {
   std::string summary;  // "1234 patches, 5678 shots, 0.01 % unshot"
 };
 
+// Chosen: fewer leave no shadows, more take gigabytes for form factors.
+constexpr std::uint32_t kPatchCountMin = 20, kPatchCountMax = 5000;
+
 struct RadiosityWork {
   std::uint32_t threads = 1;
   std::uint32_t patch_count = 0;  // roughly; 0: the default
