@@ -280,13 +280,11 @@ void add_servers_options(Command command, ServersOptions* o) {
       .one_of({"rows", "effect", "auto"})
       .default_str("rows")
       .group(group);
-  command.add_option("--light-pitch", o->light_pitch, "with --split: pixel spacing of a server's light, 2 … 16")
-      .range(kLightPitchMin, kLightPitchMax)
-      .default_str("6")
-      .group(group);
   command
-      .add_option("--light-every", o->light_every,
-                  "with --split: number of frames of a moving view that use one map of a server's light, 1 … 60")
+      .add_option(
+          "--light-every", o->light_every,
+          "with --split: number of frames of a moving view that use one map of a server's light, 1 … 60; 4 take a "
+          "quarter of its bytes")
       .range(1u, kLightEveryMax)
       .capture_default_str()
       .group(group);

@@ -120,8 +120,7 @@ Json effect_json(const SplitPoint& p) {
 Json light_json(const std::vector<LightMapPoint>& points) {
   Json light = Json::array();
   for (const LightMapPoint& p : points)
-    light.push_back({{"light_pitch", p.pitch > 0 ? Json(p.pitch) : Json()},
-                     {"light_every", p.every},
+    light.push_back({{"light_every", p.every > 0 ? Json(p.every) : Json()},
                      {"ns_per_pixel", p.ns_per_pixel},
                      {"light_bytes_per_frame", p.light_bytes},
                      {"flip", p.flip}});
@@ -222,11 +221,11 @@ void print_bytes(const SplitSetup& setup, const SplitFigures& s) {
 void print_light(const SplitSetup& setup, const SplitFigures& s) {
   if (s.light.empty()) return;
   std::printf("light from a server (--split effect): how different frames look from those of the device alone\n");
-  std::printf("  %-16s %6s %14s %14s %8s\n", "--light-pitch", "every", "ms per frame", "bytes of light", "ꟻLIP");
+  std::printf("  %-16s %14s %14s %8s\n", "--light-every", "ms per frame", "bytes of light", "ꟻLIP");
   for (const LightMapPoint& p : s.light) {
-    const std::string pitch = p.pitch > 0 ? std::to_string(p.pitch) : "the device's own";
-    std::printf("  %-16s %6u %14.2f %14.0f %8.4f\n", pitch.c_str(), p.every,
-                p.ns_per_pixel * pixel_count(*setup.device) * 1e-6, p.light_bytes, p.flip);
+    const std::string every = p.every > 0 ? std::to_string(p.every) : "the device's own";
+    std::printf("  %-16s %14.2f %14.0f %8.4f\n", every.c_str(), p.ns_per_pixel * pixel_count(*setup.device) * 1e-6,
+                p.light_bytes, p.flip);
   }
 }
 

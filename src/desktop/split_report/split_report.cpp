@@ -26,9 +26,8 @@ constexpr std::uint32_t kChosenLaps = 2;
 constexpr double kPaperTransferNs = 400;  // T_t of [Aranha07] sec. 4
 constexpr int kRefinements = 2, kPaperRuns = 2, kPaperRows = 6;
 
-// Maps of a server's light to measure: pitch, and frames per map. The first is the default.
-constexpr std::uint32_t kLightChoices[][2] = {
-    {kLightPitch, 1}, {2, 1}, {4, 1}, {8, 1}, {12, 1}, {16, 1}, {kLightPitch, 2}, {kLightPitch, 4}, {kLightPitch, 8}};
+// Frames per map of a server's light, as measured. The first is the default.
+constexpr std::uint32_t kLightEvery[] = {1, 2, 4, 8};
 
 // While it exists, the device and its servers trace frames whole.
 struct WholeFrames {
@@ -351,7 +350,7 @@ Status measure_effects(const SplitSetup& setup, Progress* progress, SplitFigures
 
 std::uint64_t light_frame_count(const SplitSetup& setup) {
   const std::uint64_t lap = kSkippedFrames + setup.frame_count;
-  return std::size(kLightChoices) * (4 + 3 * lap) + 2 * lap;
+  return std::size(kLightEvery) * (4 + 3 * lap) + 2 * lap;
 }
 
 Status measure_light(const SplitSetup& setup, Progress* progress, SplitFigures* figures) {
@@ -363,12 +362,12 @@ Status measure_light(const SplitSetup& setup, Progress* progress, SplitFigures* 
   own.ns_per_pixel = setup.own_light_ns;
   RETURN_IF_ERROR(render_path(setup, &frames_done, progress, &frames, &own.flip, &complete));
   if (complete) figures->light.push_back(own);
-  for (const auto& choice : kLightChoices) {
+  for (std::uint32_t every : kLightEvery) {
     if (!complete) break;
     LightOptions light;
-    light.split = SplitKind::effect, light.pitch = choice[0], light.every = choice[1];
+    light.split = SplitKind::effect, light.every = every;
     LightMapPoint point;
-    point.pitch = light.pitch, point.every = light.every;
+    point.every = every;
     SplitPoint measured;
     const Shown shown = [&](const Client& client, std::uint32_t step) {
       point.flip += flip_of(frames, step, merged_row(client, 0)) / setup.frame_count;

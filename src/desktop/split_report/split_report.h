@@ -47,7 +47,7 @@ struct SplitPoint {
 
 // A way to have light from a server (--split effect).
 struct LightMapPoint {
-  std::uint32_t pitch = 0, every = 1;        // pixels between mapped pixels, 0: no server; frames per map
+  std::uint32_t every = 0;                   // frames per map; 0: no server
   double ns_per_pixel = 0, light_bytes = 0;  // of the median frame; of the mean frame
   double flip = 0;                           // mean over frames, against the device alone with that light
 };
@@ -82,8 +82,8 @@ Status measure_split(const SplitSetup& setup, std::uint32_t step_count, Progress
 // Measures frames shared by effect, and by whichever way is chosen, as `render --split effect` and `auto` do.
 std::uint64_t effect_frame_count(const SplitSetup& setup);
 Status measure_effects(const SplitSetup& setup, Progress* progress, SplitFigures* figures);
-// Measures frames shared by effect with fewer or more mapped pixels, and with maps for every frame or for several: what
-// they save and how different the frames look. An interrupt keeps finished points.
+// Measures frames shared by effect, with a map for each frame or for several: what that saves and how different the
+// frames look. An interrupt keeps finished points.
 std::uint64_t light_frame_count(const SplitSetup& setup);
 Status measure_light(const SplitSetup& setup, Progress* progress, SplitFigures* figures);
 // Measures Table 1 of [Aranha07] with the paper's T_m and T_s, and T_t = 400 ns per pixel for this scene's compressed
