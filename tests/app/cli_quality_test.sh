@@ -25,6 +25,17 @@ expect quality_unknown 1 'draft, low, medium, high or best' render cornell "${sm
 expect quality_beside_a_budget 2 'excludes' render cornell "${small[@]}" --quality low --budget-ms 40 -o refused.png
 expect plan_shows_the_dial 0 '^  high .*samples 1 to 4, indirect auto to instant-radiosity' plan cornell
 expect plan_says_what_measures_it 0 'quality, built in; .pocketray accuracy. measures' plan cornell
+# Goal: plan says what baked radiosity would take, unless it is stored or there is nothing to solve.
+if "${run[@]}" bake --help 2>/dev/null | grep -q -- --radiosity && "${run[@]}" --help | grep -q '^ *accuracy '; then
+  expect plan_offers_radiosity 0 'would store 0.26 MiB or more; --prices predicts its time' plan cube
+  expect plan_offers_radiosity_as_json 0 '"bytes_at_least": 267740' plan cube --json -
+  if [ $# -eq 0 ]; then  # emulated, it takes minutes
+    expect plan_predicts_radiosity 0 'would take [0-9.]+ s here and store 0.26 MiB' plan cube --prices
+    "${run[@]}" bake cube --radiosity -o lit.pray >/dev/null 2>&1
+    "${run[@]}" plan lit.pray >lit.txt
+    check plan_offers_no_second_radiosity test "$(grep -c 'radiosity: not stored' lit.txt)" = 0
+  fi
+fi
 expect plan_has_the_dial_as_json 0 '"level": "best"' plan cornell --json -
 
 # Goal: where the scene's front was measured, levels are its points. Method: a front of two candidates in the cache; the
