@@ -1,9 +1,12 @@
-// Parsing of command lines: every refusal names the option and the cure.
+// Parsing of command lines: CLI11 divides them into options and their texts; refusals, each of which names the option
+// and the cure, are ours.
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
 
 #include "app/command_spec.h"
+#include "base/check.h"
 #include "base/nearest_word.h"
 
 namespace pocketray {
@@ -112,119 +115,109 @@ void store(OptionSpec* option, const std::string& text) {
   if (option->kind == ValueKind::text) option->store(text);
 }
 
-class Parser {
- public:
-  Parser(const CommandSpec& program, CommandSpec* command, const std::vector<std::string>& words)
-      : program_(program), command_(command), words_(words) {}
+// CLI11's options, one for each of a command's.
+using Reader = std::vector<std::pair<OptionSpec*, CLI::Option*>>;
 
-  // Returns help if it is asked for.
-  std::string parse(const TextStyle& style) {
-    for (bool options_ended = false; at_ < words_.size();) {
-      const std::string& word = words_[at_++];
-      if (options_ended || !looks_like_option(word)) {
-        take_positional(word);
-      } else if (word == "--") {
-        options_ended = true;
-      } else if (is_help(word)) {
-        return help(style);
-      } else if (is_help_all(word)) {
-        return command_help(*command_, true, style);
-      } else {
-        take_option(word);
-      }
-    }
-    check_presence();
-    return "";
-  }
+CLI::Option* declare(const OptionSpec& option, CLI::App* app) {
+  std::string names;
+  for (const std::string& name : option.names) names += (names.empty() ? "" : ",") + name;
+  CLI::Option* declared = app->add_option(names, [](const CLI::results_t&) { return true; });
+  declared->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  if (option.kind == ValueKind::flag || option.value_is_optional) declared->expected(0, 1);
+  if (option.is_positional) declared->required(option.is_required);  // lists leave a word for it
+  if (option.is_list) declared->expected(1, CLI::detail::expected_max_vector_size);
+  return declared->allow_extra_args(option.is_list && !option.one_value_each);
+}
 
- private:
-  std::string help(const TextStyle& style) const {
-    if (at_ >= words_.size()) return command_help(*command_, false, style);
-    const std::string& word = words_[at_];
-    const OptionSpec* option = find_option(*command_, word);
-    if (!option) option = find_option(*command_, "--" + word);
-    if (option) return option_help(*command_, *option, style);
-    if (looks_like_option(word)) refuse_option(program_, *command_, word);
-    return command_help(*command_, false, style);
-  }
+// Refuses what CLI11 would take for a value: "-output" is no value of -o.
+void check_short_names(const CommandSpec& program, const CommandSpec& command, const std::vector<std::string>& words) {
+  for (const std::string& word : words)
+    if (word.size() > 2 && word[0] == '-' && word[1] != '-' && find_option(command, "-" + name_of(word)))
+      refuse_option(program, command, word);
+}
 
-  std::size_t missing_positionals() const {
-    std::size_t count = 0;
-    for (const auto& option : command_->options)
-      count += option->is_positional && option->is_required && !option->count;
-    return count;
-  }
+[[noreturn]] void refuse_without_value(const OptionSpec& option) {
+  const std::string allowed = allowed_values(option), &name = option.names[0];
+  refuse_usage(name + " needs a value: " + name + " " + option.placeholder + (allowed.empty() ? "" : ", " + allowed));
+}
 
-  void take_positional(const std::string& word) {
-    std::string takes;
-    for (const auto& option : command_->options) {
-      if (!option->is_positional) continue;
-      if (option->count == 0) {
-        ++option->count;
-        return pocketray::store(option.get(), word);
-      }
-      takes += (takes.empty() ? "" : " and ") + option->names[0];
-    }
-    refuse_usage(quoted(word) + " is one argument too many: " + full_name(*command_) + " takes " +
-                 (takes.empty() ? "options only" : takes));
-  }
+// Refuses the first word that is neither an option nor an argument's.
+void check_remaining(const CommandSpec& program, const CommandSpec& command, const std::vector<std::string>& words) {
+  if (words.empty() || words == std::vector<std::string>{"--"}) return;
+  if (looks_like_option(words[0]) && words[0] != "--") refuse_option(program, command, words[0]);
+  const std::string& word = words[words[0] == "--"];
+  std::string takes;
+  for (const auto& option : command.options)
+    if (option->is_positional) takes += (takes.empty() ? "" : " and ") + option->names[0];
+  refuse_usage(quoted(word) + " is one argument too many: " + full_name(command) + " takes " +
+               (takes.empty() ? "options only" : takes));
+}
 
-  // Takes the next word as a further value unless it is an option or the place of a positional argument.
-  bool take_next(OptionSpec* option) {
-    if (at_ >= words_.size() || looks_like_option(words_[at_]) || words_.size() - at_ <= missing_positionals())
-      return false;
-    pocketray::store(option, words_[at_++]);
-    return true;
-  }
-
-  void take_option(const std::string& word) {
-    const bool is_long = word.compare(0, 2, "--") == 0;
-    const std::string name = is_long ? name_of(word) : word.substr(0, 2);
-    OptionSpec* option = find_option(*command_, name);
-    // "-output" is no value of -o
-    if (!option || (!is_long && word.size() > 2 && find_option(*command_, "-" + name_of(word))))
-      refuse_option(program_, *command_, word);
-    if (++option->count > 1 && !option->is_list) refuse_usage(name + " is given twice: give it once");
-    const bool is_attached = word.size() > name.size();
-    const std::string attached = is_attached ? word.substr(name.size() + (word[name.size()] == '=')) : "";
+void store_all(const CommandSpec& command, OptionSpec* option, const CLI::results_t& texts) {
+  option->count = texts.size();
+  const std::string& name = option->names[0];
+  if (texts.size() > 1 && !option->is_list) refuse_usage(name + " is given twice: give it once");
+  for (const std::string& text : texts) {
     if (option->kind == ValueKind::flag) {
-      if (is_attached) refuse_usage(name + " takes no value, here " + quoted(attached));
+      if (!text.empty()) refuse_usage(name + " takes no value, here " + quoted(text));
       option->store("");
-    } else if (is_attached) {
-      pocketray::store(option, attached);
-    } else if (option->value_is_optional) {
-      take_next(option);
-    } else {
-      if (at_ >= words_.size() || is_option(*command_, words_[at_])) {
-        const std::string allowed = allowed_values(*option);
-        refuse_usage(name + " needs a value: " + name + " " + option->placeholder +
-                     (allowed.empty() ? "" : ", " + allowed));
-      }
-      pocketray::store(option, words_[at_++]);
-      while (option->is_list && !option->one_value_each && take_next(option)) continue;
+    } else if (!option->is_positional && is_option(command, text)) {
+      refuse_without_value(*option);
+    } else if (!text.empty() || !option->value_is_optional) {
+      store(option, text);
     }
   }
+}
 
-  void check_presence() const {
-    for (const auto& option : command_->options) {
-      if (option->is_required && option->count == 0)
-        refuse_usage(command_->name + " needs " + option->names[0] +
-                     (option->is_positional ? "" : " " + option->placeholder) + ": " + option->help);
-      if (option->count == 0) continue;
-      for (const OptionSpec* other : option->needs)
-        if (other->count == 0) refuse_usage(option->names[0] + " needs " + other->names[0] + ": add it");
-      for (const Exclusion& exclusion : option->excludes)
-        if (exclusion.other->count > 0)
-          refuse_usage(option->names[0] + " excludes " + exclusion.other->names[0] + ": " + exclusion.because +
-                       "; drop one of them");
-    }
+void check_presence(const CommandSpec& command) {
+  for (const auto& option : command.options) {
+    if (option->is_required && option->count == 0)
+      refuse_usage(command.name + " needs " + option->names[0] +
+                   (option->is_positional ? "" : " " + option->placeholder) + ": " + option->help);
+    if (option->count == 0) continue;
+    for (const OptionSpec* other : option->needs)
+      if (other->count == 0) refuse_usage(option->names[0] + " needs " + other->names[0] + ": add it");
+    for (const Exclusion& exclusion : option->excludes)
+      if (exclusion.other->count > 0)
+        refuse_usage(option->names[0] + " excludes " + exclusion.other->names[0] + ": " + exclusion.because +
+                     "; drop one of them");
   }
+}
 
-  const CommandSpec& program_;
-  CommandSpec* command_;
-  const std::vector<std::string>& words_;
-  std::size_t at_ = 0;
-};
+// Help on the command, or on the option named after --help.
+std::string help_after(const CommandSpec& program, const CommandSpec& command, const std::string& word,
+                       const TextStyle& style) {
+  for (const std::string& name : {word, "--" + word})
+    if (const OptionSpec* option = find_option(command, name)) return option_help(command, *option, style);
+  if (looks_like_option(word)) refuse_option(program, command, word);
+  return command_help(command, false, style);
+}
+
+// Returns help if it is asked for.
+std::string read_options(const CommandSpec& program, CommandSpec* command, const std::vector<std::string>& words,
+                         const TextStyle& style) {
+  const auto help = std::find_if(words.begin(), words.end(), is_help);
+  if (help != words.end()) return help_after(program, *command, help + 1 == words.end() ? "" : help[1], style);
+  if (std::any_of(words.begin(), words.end(), is_help_all)) return command_help(*command, true, style);
+  check_short_names(program, *command, words);
+  CLI::App app;
+  app.set_help_flag();
+  app.allow_extras();
+  Reader reader;
+  for (const auto& option : command->options) reader.emplace_back(option.get(), declare(*option, &app));
+  try {
+    app.parse(std::vector<std::string>(words.rbegin(), words.rend()));  // CLI11 takes the last word first
+  } catch (const CLI::ArgumentMismatch&) {
+    const OptionSpec* last = find_option(*command, words.back());
+    CHECK(last != nullptr);  // the only place where a value can be missing
+    refuse_without_value(*last);
+  } catch (const CLI::RequiredError&) {  // check_presence() tells of it
+  }
+  check_remaining(program, *command, app.remaining());
+  for (const auto& read : reader) store_all(*command, read.first, read.second->results());
+  check_presence(*command);
+  return "";
+}
 
 bool is_any_of(const std::string& word, std::initializer_list<const char*> words) {
   return std::find(words.begin(), words.end(), word) != words.end();
@@ -273,7 +266,7 @@ ParseResult CommandLine::parse(const std::vector<std::string>& words) {
       named_command(*program_, words[0]);
       command = find_command(*program_, words[0]);
     }
-    result.help = Parser(*program_, command, rest).parse(style_);
+    result.help = read_options(*program_, command, rest, style_);
   } catch (const Refusal& refusal) {
     result.error = refusal.text;
     result.usage = refusal.is_usage;

@@ -1,4 +1,5 @@
-# The program: commands on top of the library. nlohmann-json (reports) is header-only.
+# The program: commands on top of the library. CLI11 (options) and nlohmann-json (reports) are header-only; devices need neither.
+find_path(CLI11_INCLUDE CLI/CLI.hpp REQUIRED)
 find_path(JSON_INCLUDE nlohmann/json.hpp REQUIRED)
 file(GLOB POCKETRAY_APP CONFIGURE_DEPENDS src/session/*.cpp src/budget/*.cpp src/viewer/*.cpp src/app/*.cpp)
 list(REMOVE_ITEM POCKETRAY_APP ${CMAKE_CURRENT_SOURCE_DIR}/src/app/main.cpp)
@@ -26,7 +27,7 @@ endif()
 if(POCKETRAY_NETWORK)
   target_compile_definitions(pocketray_app PUBLIC POCKETRAY_HAVE_NETWORK)
 endif()
-target_include_directories(pocketray_app SYSTEM PUBLIC ${JSON_INCLUDE})
+target_include_directories(pocketray_app SYSTEM PRIVATE ${CLI11_INCLUDE} PUBLIC ${JSON_INCLUDE})
 target_link_libraries(pocketray_app PUBLIC pocketray_core pocketray_platform)
 if(POCKETRAY_HAVE_TLS)
   set_property(SOURCE src/remote/encryption.cpp APPEND PROPERTY COMPILE_DEFINITIONS POCKETRAY_HAVE_TLS)

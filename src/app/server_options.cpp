@@ -42,10 +42,6 @@ void add_servers_options(Command command, ServersOptions* o) {
           "rows: some rows, exactly as the device would. effect: indirect light at some pixels, while the device "
           "renders "
           "every pixel without it. auto: whichever is faster, or both.");
-  command.add_option("--light-pitch N", o->light_pitch, "pixels between those that a server lights")
-      .range(kLightPitchMin, kLightPitchMax)
-      .default_str("6")
-      .details("With --split effect or auto.");
   command.add_option("--light-every N", o->light_every, "frames of a moving view that share a server's light")
       .range(1, kLightEveryMax)
       .capture_default_str()

@@ -11,6 +11,7 @@
 #include "platform/standard_streams.h"
 #include "session/interrupt.h"
 #include "session/output.h"
+#include "session/quality_dial.h"
 #include "session/report.h"
 #include "session/servers.h"
 #include "viewer/picker.h"
@@ -25,6 +26,7 @@ struct Loading {
   std::unique_ptr<OpenScene> opened = std::make_unique<OpenScene>();
   Status status;
   OpenFront front;
+  QualityDial dial;
   std::atomic<bool> done{false};
   std::thread thread;
 
@@ -32,7 +34,8 @@ struct Loading {
       : servers(viewer->servers), thread([this, &options, &budget, viewer] {
           status = chooses_settings(budget)
                        ? open_scene_with_front(options, front_source(budget, false), viewer_bytes, opened.get(), &front)
-                       : open_scene_with(servers, options, viewer_bytes, opened.get());
+                   : servers ? open_scene_with(servers, options, viewer_bytes, opened.get())
+                             : open_scene_with_dial(options, viewer_bytes, opened.get(), &dial);
           if (status.ok && servers)
             status = servers->backend->start(servers, &opened->renderer, viewer->format.bits_per_pixel == 16,
                                              viewer->options.dither);
@@ -64,15 +67,16 @@ struct ViewCommand {
 };
 
 // Shows the loaded scene until the user quits or a reload is due.
-Status show(const ViewCommand& o, const Loading& loading, Viewer* viewer, bool* again) {
-  Renderer* renderer = &loading.opened->renderer;
-  print_notes(*loading.opened);
-  print_notes(loading.front);
+Status show(const ViewCommand& o, Loading* loading, Viewer* viewer, bool* again) {
+  Renderer* renderer = &loading->opened->renderer;
+  print_notes(*loading->opened);
+  print_notes(loading->front);
   Budget budget;
-  if (chooses_settings(o.budget)) start_budget(o.budget, loading.front, *renderer, 4096, &budget);
+  if (chooses_settings(o.budget)) start_budget(o.budget, loading->front, *renderer, 4096, &budget);
   viewer->budget = chooses_settings(o.budget) ? &budget : nullptr;
-  viewer->focus = loading.opened->source.focus;
-  viewer->material_names = loading.opened->source.material_names;
+  viewer->dial = viewer->budget || viewer->servers ? nullptr : &loading->dial;
+  viewer->focus = loading->opened->source.focus;
+  viewer->material_names = loading->opened->source.material_names;
   if (!o.side_by_side.reference.empty())
     viewer->side_by_side =
         o.parts.side_by_side->open(o.side_by_side, *renderer, viewer->format.bits_per_pixel, o.view.dither);
@@ -86,6 +90,7 @@ Status show(const ViewCommand& o, const Loading& loading, Viewer* viewer, bool* 
     viewer->side_by_side->backend->close(viewer->side_by_side);
   }
   viewer->budget = nullptr;
+  viewer->dial = nullptr;
   viewer->side_by_side = nullptr;
   return status;
 }
@@ -118,7 +123,7 @@ bool load_and_show(const ViewCommand& o, const std::string& news, Viewer* viewer
   *status = loading.status;
   if (status->ok) *status = check_log(o, *loading.opened);
   if (status->ok && !news.empty()) tell(viewer, news.c_str());
-  if (status->ok) *status = show(o, loading, viewer, again);
+  if (status->ok) *status = show(o, &loading, viewer, again);
   return true;
 }
 
@@ -281,7 +286,7 @@ void add_view_command(Command program, const OptionalParts& parts, int* exit_sta
                              "  Q, W [L, R]           move left, right\n"
                              "  right shift [select]  switch between orbit and fly\n"
                              "  return [start]        the scene's camera, and what --budget-ms chooses\n"
-                             "  page up, page down    step through the settings of --budget-ms\n"
+                             "  +, - [select + pad]   quality, or settings of --budget-ms\n"
                              "  S [X]                 pause\n"
                              "  F1, A [Y]             show what a frame costs\n") +
                  (parts.side_by_side ? "  V                     show or hide the reference of --side-by-side\n" : "") +

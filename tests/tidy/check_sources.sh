@@ -19,6 +19,8 @@ heap_rooms='session|remote|budget|viewer|desktop|app'
 # The C++ library allocates for each thread, before the seal.
 heap_files='src/engine/workers\.cpp'
 platform_rooms='session|remote|budget|viewer|desktop/(reference_view|sweep|split_report|coherence_report)|app'
+# The only file that may include CLI11.
+command_line_room=src/app/command_parse.cpp
 
 # Words forbidden in the core, as extended regular expressions.
 language='\b(try|throw|catch|dynamic_cast|typeid)\b'
@@ -66,7 +68,7 @@ forbid() {  # LIST EXPRESSION TEXT [EXCEPTION]
 
 check_includes() {
   tr '\n' '\0' <"$plain/.all" | xargs -0 -r awk -v ranks="$ranks" -v line_count_max=$line_count_max \
-    -v platform_rooms="$platform_rooms" '
+    -v platform_rooms="$platform_rooms" -v command_line_room="$command_line_room" '
     function report(text) { print FILENAME ":" FNR ": " text }
     function room(first, second) { return first == "desktop" ? first "/" second : first }
     BEGIN { n = split(ranks, entry, " "); for (i = 1; i <= n; ++i) { split(entry[i], pair, "="); rank[pair[1]] = pair[2] + 0 } }
@@ -84,6 +86,7 @@ check_includes() {
       platform_user = folder ~ "^(" platform_rooms ")$" || part[1] == "tests" || part[1] == "platform"
       if (target ~ /(^|\/)\.\.\//) report("include " target " by its path from src/ or platform/")
       else if (top == "platform" && target !~ /^platform\/devices\// && !platform_user) report(folder "/ must not include " target)
+      else if (target ~ /^CLI\// && FILENAME != command_line_room) report("only " command_line_room " includes CLI11, which takes long to compile")
       else if (target ~ /(^|\/)(platform|link)\.h$/ && !platform_user) report(folder "/ must not include " target)
       else if (part[1] == "platform" && top in rank && target ~ /\//) report("platform/ includes nothing of src/, here " target)
       else if (part[1] == "src" && folder in rank && top in rank && target ~ /\// && top != folder && rank[top] >= rank[folder])

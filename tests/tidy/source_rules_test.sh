@@ -39,6 +39,8 @@ must_fail "platform/ includes nothing of src/" platform/linux/fb.cpp '#include "
 must_fail "present/ must not include platform/platform.h" src/present/a.cpp '#include "platform/platform.h"'
 must_fail "plan/ must not include platform/linux/framebuffer.h" src/plan/a.cpp '#include "platform/linux/framebuffer.h"'
 must_fail "by its path" src/app/a.cpp '#include "../base/vec3.h"'
+must_fail "includes CLI11" src/app/a_command.cpp '#include <CLI/CLI.hpp>'
+must_fail "includes CLI11" tests/app/a_test.cpp '#  include <CLI/App.hpp>'
 must_fail "operating system" src/base/a.cpp '#ifdef __linux__' '#endif'
 must_fail "operating system" src/app/a.cpp '#if defined(FOO) && defined(_WIN32)' '#endif'
 must_fail "exceptions" src/base/a.cpp 'void f() { throw 1; }'
@@ -84,6 +86,7 @@ must_fail "opens with a back-reference" src/base/a.h "$twenty" "  $(comment_that
 must_pass src/base/a.h "$twenty" "$(comment_that_opens Offset)"
 must_pass tests/base/a_test.cpp "$twenty" "$(comment_that_opens Of)"
 must_pass src/shade/a.cpp '#include "accel/accel.h"' '#include "shade/b.h"' '#include <cmath>'
+must_pass src/app/command_parse.cpp '#include <CLI/CLI.hpp>'
 must_pass src/app/a.cpp '#include "platform/platform.h"' '#include <vector>' 'auto p = new std::vector<int>; throw std::pow(1, 2);'
 must_pass src/desktop/accuracy/a.cpp '#include "present/pack.h"' '#include <vector>' 'double x = std::pow(a, b);'
 must_fail "(rank 6) must not include engine/frame.h (rank 7)" src/desktop/accuracy/a.cpp '#include "engine/frame.h"'

@@ -44,6 +44,7 @@ int lead(AccuracyOptions options) {
               sweep.judge == Judge::truth;
   if (kept) {
     Status written = cache_front(front.path, front.front);
+    if (written.ok) written = cache_front(front.prices_path, prices_alone(front.front));
     kept = written.ok;
     if (!kept) std::fprintf(stderr, "pocketray: %s; prices are not kept\n", written.message);
   }
@@ -59,7 +60,7 @@ int lead(AccuracyOptions options) {
 
 int run(const AccuracyOptions& options) {
   if (!options.counting_folder.empty()) return report(render_for_valgrind(options));
-  Rigs rigs = {options, {}};
+  Rigs rigs = {options, {}, {}};
   // Only when the leader begins a reference: afterwards nothing may disturb its measurements.
   ReferenceHelper helper(options.team, options, [&](Rig** found) {
     SweepPlan plan;
@@ -95,6 +96,10 @@ void add_accuracy_command(Command program, const Team& team, int* exit_status) {
       .capture_default_str();
   command.add_flag("--count-instructions", o->starts_valgrind, "count instructions with valgrind")
       .details("Where the CPU does not count them; takes a minute or more, with many lights hours.");
+  command.add_flag("--bake-choices", o->bakes, "also bake the scene otherwise and measure that")
+      .details(
+          "Bakes it with other --textures, --texture-max and --crease-angle, without mip maps, and with --radiosity of "
+          "few to many patches: time, bytes and error of each. Says first how long the bakes take.");
   command.add_flag("--restart", o->restart, "discard the folder's measurements and start over");
   command.chapter("Reference");
   command.add_option("--reference WHAT", o->reference, "judge: physical, model or a FILE")
@@ -118,7 +123,7 @@ void add_accuracy_command(Command program, const Team& team, int* exit_status) {
   command.everyday("Output", {"--output", "--json"});
   command.everyday("Picture", {"--size", "--camera", "--time"});
   command.everyday("Reference", {"--reference", "--reference-samples"});
-  command.everyday("Measurement", {"--rounds", "--threads", "--count-instructions", "--restart"});
+  command.everyday("Measurement", {"--rounds", "--threads", "--bake-choices", "--restart"});
   command.example("pocketray accuracy cornell -o DIR");
   command.about(
       "Varies one setting at a time (samples, depth, points per area light, …), then several at once, then the "

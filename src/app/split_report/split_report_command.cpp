@@ -117,6 +117,16 @@ Json effect_json(const SplitPoint& p) {
   return point;
 }
 
+Json light_json(const std::vector<LightMapPoint>& points) {
+  Json light = Json::array();
+  for (const LightMapPoint& p : points)
+    light.push_back({{"light_every", p.every > 0 ? Json(p.every) : Json()},
+                     {"ns_per_pixel", p.ns_per_pixel},
+                     {"light_bytes_per_frame", p.light_bytes},
+                     {"flip", p.flip}});
+  return light;
+}
+
 Json to_json(const ReportOptions& o, const SplitSetup& setup, const SplitFigures& s, const Extras& extras) {
   const Settings& settings = setup.device->settings;
   Json sweep = Json::array(), paper = Json::array(), clients = Json::array();
@@ -137,6 +147,7 @@ Json to_json(const ReportOptions& o, const SplitSetup& setup, const SplitFigures
           {"best", point_json(s.best)},
           {"by_effect", effect_json(s.effect)},
           {"rows_and_effect", effect_json(s.both)},
+          {"light", light_json(s.light)},
           {"device_own_light_ns_per_pixel", setup.own_light_ns > 0 ? Json(setup.own_light_ns) : Json()},
           {"local_ns_per_pixel", s.local.ns_per_pixel},
           {"paper", paper},
@@ -207,6 +218,17 @@ void print_bytes(const SplitSetup& setup, const SplitFigures& s) {
                 s.chosen.kept_rows);
 }
 
+void print_light(const SplitSetup& setup, const SplitFigures& s) {
+  if (s.light.empty()) return;
+  std::printf("light from a server (--split effect): how different frames look from those of the device alone\n");
+  std::printf("  %-16s %14s %14s %8s\n", "--light-every", "ms per frame", "bytes of light", "ꟻLIP");
+  for (const LightMapPoint& p : s.light) {
+    const std::string every = p.every > 0 ? std::to_string(p.every) : "the device's own";
+    std::printf("  %-16s %14.2f %14.0f %8.4f\n", every.c_str(), p.ns_per_pixel * pixel_count(*setup.device) * 1e-6,
+                p.light_bytes, p.flip);
+  }
+}
+
 void print_paper(const SplitFigures& s) {
   if (s.paper.empty()) return;
   std::printf(
@@ -267,6 +289,9 @@ Status measure(const ReportOptions& o, const SplitSetup& setup, SplitFigures* fi
     progress = start_progress("rows and effects", effect_frame_count(setup));
     status = measure_effects(setup, &progress, figures);
     end_progress(&progress);
+    progress = start_progress("maps of light", light_frame_count(setup));
+    if (status.ok && !interrupted) status = measure_light(setup, &progress, figures);
+    end_progress(&progress);
   }
   if (!status.ok || interrupted || o.no_paper) return status;
   progress = start_progress("the paper's table", paper_frame_count(setup));
@@ -308,6 +333,7 @@ int run(const ReportOptions& o) {
     std::printf("%s\n", title_of(o, setup).c_str());
     print_sweep(setup, figures);
     print_bytes(setup, figures);
+    print_light(setup, figures);
     print_paper(figures);
     print_extras(extras);
   }

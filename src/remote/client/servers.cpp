@@ -82,8 +82,7 @@ Status check(const ServersOptions& o) {
     return failure("--verify checks pixels of render servers: add --server");
   if (o.addresses.empty() && o.near_lossless)
     return failure("--near-lossless applies to pixels of render servers: add --server");
-  if (o.split == "rows" && (o.light_pitch != 0 || o.light_every != 1))
-    return failure("--light-pitch and --light-every apply to --split effect and auto");
+  if (o.split == "rows" && o.light_every != 1) return failure("--light-every applies to --split effect and auto");
   if (o.split != "rows" && o.addresses.empty())
     return failure("--split shares frames with render servers: add --server");
   if (o.split != "rows" && o.device_share != kBestShare)
@@ -111,7 +110,6 @@ LightOptions light_options(const ConnectedServers& s) {
   const ServersOptions& o = s.options;
   if (!s.is_thin)
     light.split = o.split == "effect" ? SplitKind::effect : o.split == "auto" ? SplitKind::automatic : SplitKind::rows;
-  if (o.light_pitch != 0) light.pitch = o.light_pitch;
   light.every = o.light_every;
   if (!o.coarse_first) light.wait_ns = kLightWaitNs;
   return light;
