@@ -61,9 +61,11 @@ std::vector<std::string> command_names(const CommandSpec& program) {
   const std::string name = name_of(word);
   const bool is_command = command.parent != nullptr;
   std::string cure = suggestion(name, option_names(command));
-  for (const auto& other : program.commands)
-    if (cure.empty() && other.get() != &command && find_option(*other, name))
+  for (const auto& other : program.commands) {
+    const OptionSpec* there = find_option(*other, name);
+    if (cure.empty() && there && !there->is_hidden)
       cure = (is_command ? " in " + command.name : " before the command") + "; " + other->name + " has one";
+  }
   if (cure.empty()) cure = "; `" + full_name(command) + " --help" + (is_command ? "-all" : "") + "` lists them";
   refuse_usage("there is no option " + cut(name) + cure);
 }

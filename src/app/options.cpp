@@ -71,7 +71,7 @@ void add_scene(Command command, CommonOptions* o, bool required) {
   Option scene = command.add_option("SCENE", o->scene, scene_help());
   if (required) scene.required();
   command.chapter("Picture");
-  command.add_option("--size WxH", o->size, "pixels of the picture").default_str("320x240, or the device's");
+  command.add_option("--size WxH", o->size, "picture size in pixels").default_str("320x240, or the device's");
 }
 
 void add_effects(Command command, CommonOptions* o) {

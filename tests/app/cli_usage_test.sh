@@ -18,6 +18,10 @@ if "${run[@]}" view --help >/dev/null 2>&1; then
   expect nothing_to_choose 1 'name a SCENE' view --screen null --frames 1
 fi
 expect unknown_scene 1 'no_such_scene' render no_such_scene -o a.ppm
+expect size_with_another_cross 0 '16×12' render cube --size 16X12 -o a.ppm
+for memory in 24M 24MB 24MiB 24576K 24576KiB; do
+  expect "memory_$memory" 0 'of 24.0 MiB' plan cube "${small[@]}" --memory $memory
+done
 expect bad_size 1 '320x240' render cube --size 0y3 -o a.ppm
 expect bad_size_zero 1 'width' render cube --size 0x3 -o a.ppm
 expect bad_ending 1 '\.png' render cube "${small[@]}" -o a.bmp

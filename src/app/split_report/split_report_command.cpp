@@ -354,6 +354,7 @@ void add_split_report_command(Command program, int* exit_status) {
   o->common.emulate = "tablet";
   Command command = program.add_subcommand("split-report", "measure what sharing frames with servers gains");
   add_scene_options(command, &o->common);
+  command.get_option("--emulate").capture_default_str();
   add_coherence_options(command, &o->common, "off");
   command.chapter("Simulation");
   command.add_option("--servers N", o->server_count, "number of servers")
