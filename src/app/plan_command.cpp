@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <thread>
 
 #include "app/commands.h"
 #include "app/options.h"
@@ -12,6 +13,7 @@
 #include "session/output.h"
 #include "session/picture.h"
 #include "session/quality_choice.h"
+#include "session/radiosity.h"
 #include "session/report.h"
 
 namespace pocketray {
@@ -64,9 +66,11 @@ double frame_ms(const Renderer& renderer, const LevelMeaning& level) {
 }
 
 void print_levels(const Renderer& renderer, const Levels& levels) {
-  std::printf("--quality, %s\n", levels[0].is_measured
-                                     ? "as `pocketray accuracy` measured this scene (ꟻLIP to full light transport)"
-                                     : "built in; `pocketray accuracy` measures what this scene gains from each");
+  std::printf("--quality, %s\n",
+              !levels[0].is_measured ? "built in; `pocketray accuracy` measures what this scene gains from each"
+              : levels[0].is_priced  ? "as `pocketray accuracy` measured this scene (ꟻLIP to full light transport)"
+                                     : "as `pocketray accuracy` measured this scene, with times of another machine or "
+                                       "number of threads; `bench --front` measures those of this one");
   for (int i = 0; i < kQualityLevelCount; ++i) {
     char change[kFrontLineMax];
     describe_change(Quality(), levels[i].candidate, change, sizeof change);
@@ -87,19 +91,61 @@ Json levels_json(const Renderer& renderer, const Levels& levels) {
     list.push_back({{"level", kQualityLevelNames[i]},
                     {"settings", settings},
                     {"measured", is_measured},
+                    {"priced_here", levels[i].is_priced},
                     {"ms", is_measured ? Json(frame_ms(renderer, levels[i])) : Json()},
                     {"flip", is_measured ? Json(levels[i].candidate.flip) : Json()}});
   }
   return list;
 }
 
+// What `bake --radiosity` would store for a scene without it.
+struct RadiosityOffer {
+  bool is_open = false;   // it stores none and has light to solve for
+  std::size_t bytes = 0;  // at least; 0: unknown
+  RadiosityCost cost;     // predicted from a sample of the work, if asked for
+};
+// Chosen: a quarter of a second.
+constexpr std::uint32_t kOfferTrianglesMax = 250000;
+
+RadiosityOffer find_offer(const Renderer& renderer) {
+  const Scene& scene = renderer.scene;
+  if (!scene.radiosity_triangles.empty() || !can_solve_radiosity(scene)) return {};
+  return {true, scene.triangles.count <= kOfferTrianglesMax ? stored_radiosity_bytes(scene) : 0, {}};
+}
+
+void print_offer(const RadiosityOffer& offer) {
+  if (!offer.is_open) return;
+  constexpr double kMebibyte = 1 << 20;
+  std::printf("radiosity: not stored; bake --radiosity would ");
+  if (offer.cost.bytes > 0)
+    std::printf("take %.2g s here and store %.2f MiB", offer.cost.seconds,
+                static_cast<double>(offer.cost.bytes) / kMebibyte);
+  else if (offer.bytes > 0)
+    std::printf("store %.2f MiB or more; --prices predicts its time", static_cast<double>(offer.bytes) / kMebibyte);
+  else
+    std::printf("take what --prices predicts");
+  std::printf(", `pocketray accuracy` its error\n");
+}
+
+Json offer_json(const RadiosityOffer& offer) {
+  if (!offer.is_open) return Json();
+  const bool is_predicted = offer.cost.bytes > 0;
+  return {{"bytes_at_least", offer.bytes > 0 ? Json(offer.bytes) : Json()},
+          {"bytes", is_predicted ? Json(offer.cost.bytes) : Json()},
+          {"seconds", is_predicted ? Json(offer.cost.seconds) : Json()}};
+}
+
 int run(const CommonOptions& options, bool prices) {
   OpenScene opened;
   Levels levels;
+  RadiosityOffer offer;
   Status status = check_outputs({{"SCENE", options.scene}}, {{"--json", options.json}});
   OpenHooks hooks = {picture_bytes};
   hooks.loaded = [&](const SceneSource& source, Renderer* loaded) {
     find_levels(options.scene, source, loaded, levels);
+    offer = find_offer(*loaded);
+    if (prices && offer.is_open)  // a scene without surfaces that light reaches has nothing to solve
+      offer.is_open = forecast_scene(std::thread::hardware_concurrency(), loaded->scene, &offer.cost).ok;
     return success();
   };
   if (status.ok) status = open_scene(options, hooks, &opened);
@@ -112,6 +158,7 @@ int run(const CommonOptions& options, bool prices) {
       print_effects(renderer.effects);
       print_memory(renderer.memory.plan);
       print_levels(renderer, levels);
+      print_offer(offer);
       const char* without = renderer.history.state.unplanned_because;
       std::printf("coherence: %s%s\n", without ? "every frame is traced whole: " : "only what changes is traced",
                   without ? without : "");
@@ -123,6 +170,7 @@ int run(const CommonOptions& options, bool prices) {
                    {"accelerator", renderer.accel.info->name},
                    {"coherence", renderer.history.state.planned},
                    {"quality", levels_json(renderer, levels)},
+                   {"radiosity_offer", offer_json(offer)},
                    {"animations", animations_json(renderer)},
                    {"effects", effects_json(renderer.effects)},
                    {"memory", memory_json(renderer.memory.plan)}};
@@ -139,12 +187,17 @@ int run(const CommonOptions& options, bool prices) {
 void add_plan_command(Command program, int* exit_status) {
   auto options = std::make_shared<CommonOptions>();
   auto prices = std::make_shared<bool>(false);
-  Command command = program.add_subcommand("plan", "show which effects a scene needs, why, and its memory map");
+  Command command = program.add_subcommand("plan", "show which effects a scene needs, why, and its memory");
   add_scene_options(command, options.get());
   add_look_options(command, options.get());
   add_coherence_options(command, options.get());
+  command.chapter("Output");
+  command.add_flag("--prices", *prices, "also print what each effect and --radiosity cost here");
   add_json_option(command, &options->json);
-  command.add_flag("--prices", *prices, "also render it and print the cost of each effect on this machine");
+  command.everyday("Picture", {"--size", "--quality", "--effects", "--environment"});
+  command.everyday("Device", {"--memory", "--device", "--accel"});
+  command.everyday("Output", {"--prices", "--json"});
+  command.example("pocketray plan seesaw --device miyoo-mini");
   command.callback([=] { *exit_status = run(*options, *prices); });
 }
 

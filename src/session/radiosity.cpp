@@ -60,20 +60,25 @@ Status prepare(const Scene& scene, Renderer* renderer, Block* block) {
 
 namespace {
 
-Status solve(const std::string& name, std::uint32_t threads, Scene* scene, RadiositySolution* solution,
+RadiosityOptions options_of(const RadiosityWork& work) {
+  RadiosityOptions options;
+  options.threads = work.threads;
+  if (work.patch_count > 0) options.patch_count = work.patch_count;
+  return options;
+}
+
+Status solve(const std::string& name, const RadiosityWork& work, Scene* scene, RadiositySolution* solution,
              SolvedRadiosity* solved) {
-  if (!has_light(*scene) || scene->info.default_lights != 0)
+  if (!can_solve_radiosity(*scene))
     return failure("%.300s has no light of its own to solve radiosity for: add one to the model", name.c_str());
   Block block;
   Renderer renderer;
   RETURN_IF_ERROR(prepare(*scene, &renderer, &block));
-  RadiosityOptions options;
-  options.threads = threads;
   constexpr std::uint64_t kSteps = 1000;  // chosen: finer than the displayed percentage
   Progress progress = start_progress("solving radiosity", kSteps);
   std::atomic<bool> showing{false};
   Status status = solve_radiosity(
-      renderer.frame, options,
+      renderer.frame, options_of(work),
       [&](double share) {
         if (!showing.exchange(true)) {
           show_progress(&progress, static_cast<std::uint64_t>(share * kSteps));
@@ -105,33 +110,69 @@ Status solve(const std::string& name, std::uint32_t threads, Scene* scene, Radio
 
 }  // namespace
 
-Status solve_scene(const std::string& name, std::uint32_t threads, Scene* scene, SolvedRadiosity* solved) {
+Status solve_scene(const std::string& name, const RadiosityWork& work, Scene* scene, SolvedRadiosity* solved) {
   CHECK(scene != nullptr && solved != nullptr);
   RadiositySolution solution;
   try {
-    return solve(name, threads, scene, &solution, solved);
+    return solve(name, work, scene, &solution, solved);
   } catch (const std::bad_alloc&) {
     const double patches = solution.patch_count;
     if (patches == 0) return failure("%.300s: not enough memory to divide its surfaces for radiosity", name.c_str());
     return failure("%.300s: not enough memory for radiosity: the form factors of %.0f patches take %.0f MiB",
                    name.c_str(), patches, 4 * patches * patches / (1 << 20));
   } catch (const std::system_error&) {
-    return failure("%.300s: not enough memory for the %u threads that solve radiosity", name.c_str(), threads);
+    return failure("%.300s: not enough memory for the %u threads that solve radiosity", name.c_str(), work.threads);
+  }
+}
+
+bool can_solve_radiosity(const Scene& scene) { return has_light(scene) && scene.info.default_lights == 0; }
+
+Status forecast_scene(std::uint32_t threads, const Scene& scene, RadiosityCost* cost) {
+  CHECK(can_solve_radiosity(scene) && cost != nullptr);
+  try {
+    Block block;
+    Renderer renderer;
+    RETURN_IF_ERROR(prepare(scene, &renderer, &block));
+    RadiosityForecast forecast;
+    RETURN_IF_ERROR(forecast_radiosity(renderer.frame, options_of({threads}), &forecast));
+    *cost = {forecast.bytes, forecast.seconds};
+    return success();
+  } catch (const std::bad_alloc&) {
+    return failure("not enough memory to divide its surfaces for radiosity");
+  } catch (const std::system_error&) {
+    return failure("not enough memory for %u threads", threads);
+  }
+}
+
+std::size_t stored_radiosity_bytes(const Scene& scene) {
+  try {
+    return radiosity_bytes_of_fronts(scene, RadiosityOptions());
+  } catch (const std::bad_alloc&) {
+    return 0;
   }
 }
 #else
-Status solve_scene(const std::string& name, std::uint32_t, Scene*, SolvedRadiosity*) {
+Status solve_scene(const std::string& name, const RadiosityWork&, Scene*, SolvedRadiosity*) {
   return failure("%.300s stores no radiosity: bake it on a desktop with pocketray bake --radiosity", name.c_str());
 }
+Status forecast_scene(std::uint32_t, const Scene&, RadiosityCost*) { return failure("this build solves no radiosity"); }
+std::size_t stored_radiosity_bytes(const Scene&) { return 0; }
+bool can_solve_radiosity(const Scene&) { return false; }
 #endif
 
 Status solve_if_requested(const std::string& name, Renderer* renderer, SceneSource* source, SceneStorage* storage) {
   CHECK(renderer != nullptr && source != nullptr && storage != nullptr);
-  Scene* scene = &renderer->scene;
-  if (renderer->settings.indirect != indirect_choice(Effect::radiosity) || !scene->radiosity_triangles.empty())
+  if (renderer->settings.indirect != indirect_choice(Effect::radiosity) || !renderer->scene.radiosity_triangles.empty())
     return success();
+  return solve_into({renderer->settings.threads}, name, renderer, source, storage);
+}
+
+Status solve_into(const RadiosityWork& work, const std::string& name, Renderer* renderer, SceneSource* source,
+                  SceneStorage* storage) {
+  CHECK(renderer != nullptr && source != nullptr && storage != nullptr);
+  Scene* scene = &renderer->scene;
   SolvedRadiosity solved;
-  RETURN_IF_ERROR(solve_scene(name, renderer->settings.threads, scene, &solved));
+  RETURN_IF_ERROR(solve_scene(name, work, scene, &solved));
   auto* copy =
       static_cast<std::uint8_t*>(arena_try_allocate(&renderer->memory.scene, solved.memory.size() + kArenaAlignment));
   if (!copy)

@@ -28,7 +28,6 @@ struct ServersOptions {
   bool coarse_first = false;      // long frames begin with a coarse picture
   bool near_lossless = false;     // servers' pixels may be off by one level per channel
   std::string split = "rows";     // rows, effect or auto
-  std::uint32_t light_pitch = 0;  // pixels between lights of a map; 0: the default
   std::uint32_t light_every = 1;  // frames of a moving view per map
   double price = 0, energy_pixel = 0, energy_byte = 0, cost_weight_ms = 0, cost_cap = 0;
 };

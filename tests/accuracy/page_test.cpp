@@ -220,6 +220,29 @@ TEST_CASE("page_tells_what_is_paid_in_bytes") {
   CHECK(has(page, "the last of 8."));
 }
 
+// Goal: choices of `bake` are told with what they store and how long they take, and radiosity in one line. Method: a
+// knob of such choices; a page without one.
+TEST_CASE("page_tells_what_bakes_store") {
+  Sweep sweep = sample_sweep();
+  std::string page = page_of(sweep, {});
+  CHECK(!has(page, "<th>stored</th>"));
+  CHECK(!has(page, "Choices of <code>bake</code>"));
+  CHECK(has(page, "<p>Baked radiosity: bake --radiosity is not predicted.</p>"));
+  add_knob(&sweep, "texture-max", 2, kNotMeasured);
+  sweep.knobs.back().is_baked = true;
+  Measured &less = sweep.measured[sweep.measured.size() - 2], &more = sweep.measured.back();
+  less.stored_bytes = 1 << 19, less.bake_seconds = 0.25, more.stored_bytes = 3 << 20;
+  sweep.radiosity = {"", 3.14, 1 << 20, 2e6, 0.061, 0.217};
+  page = page_of(sweep, {});
+  CHECK(markup_fault(page) == "");
+  CHECK(has(page, "<th>stored</th>"));
+  CHECK(has(page, "<td>0.50 MiB</td><td>0.25</td>"));
+  CHECK(has(page, "<td>3.00 MiB</td><td>–</td>"));
+  CHECK(has(page, "ms, 0.50 MiB, FLIP"));
+  CHECK(has(page, "Choices of <code>bake</code>"));
+  CHECK(has(page, "would take 3.1 s here, store 1.00 MiB"));
+}
+
 // Goal: the page shows the front against both kinds of reference and the methods of indirect light, if it knows them.
 // Method: pages with and without them.
 TEST_CASE("page_shows_either_reference_and_each_method") {

@@ -5,7 +5,7 @@
 # Goal: a sweep writes its table and its page, resumes where it was interrupted, and refuses another sweep's folder.
 if "${run[@]}" --help | grep -q '^ *accuracy '; then
   tiny=(--size 16x12 --threads 2 --reference-samples 2)
-  expect accuracy_without_folder 2 'output is required' accuracy cube
+  expect accuracy_without_folder 2 'needs --output DIR' accuracy cube
   expect accuracy_output 1 'rgb565-dithered' accuracy cube "${tiny[@]}" -o sweep --pixel-format vga
   expect accuracy_reference 1 'model, physical or a file' accuracy cube "${tiny[@]}" -o sweep --reference best
   expect accuracy_folder 1 'no/such' accuracy cube "${tiny[@]}" -o no/such/folder
@@ -27,11 +27,24 @@ if "${run[@]}" --help | grep -q '^ *accuracy '; then
   check accuracy_page grep -q '</html>' sweep/index.html
   # Goal: a scene that stores radiosity is swept by every method of indirect light and every reconstruction.
   expect bake_lit 0 'patches' bake cube --radiosity -o lit.pray
+  # Goal: fewer patches store less; their number asks for radiosity and has limits.
+  expect bake_with_few_patches 0 'radiosity: [0-9]{2,3} patches' bake cube --radiosity --patches 60 -o few.pray
+  check few_patches_store_less test "$(stat -c %s few.pray)" -lt $(($(stat -c %s lit.pray) / 4))
+  expect patches_without_radiosity 1 'patches applies to --radiosity' bake cube --patches 60 -o few.pray
+  expect patches_beyond_limits 1 'range 20 to 5000' bake cube --radiosity --patches 9 -o few.pray
   expect accuracy_of_lit 0 'index.html for the results' accuracy lit.pray "${tiny[@]}" -o lit --rounds 1
   for method in none ambient radiosity instant-radiosity; do
     check "accuracy_has_$method" grep -q "^several,.*,$method\$" lit/accuracy.csv
   done
   check accuracy_has_smooth_light grep -q '^reconstruction,cubic,[0-9]' lit/accuracy.csv
+  # Goal: choices of bake are measured on request, with what they store.
+  if [ $# -eq 0 ]; then  # emulated, radiosity of many patches takes minutes
+    expect accuracy_of_bakes 0 'bakes the scene 4 times, about .* s of which are for radiosity' accuracy cube "${tiny[@]}" \
+      -o bakes --rounds 1 --bake-choices --json bakes.json
+    check accuracy_has_bakes grep -q '^radiosity,75 patches,[0-9].*,[0-9]*,[0-9.e-]*,radiosity$' bakes/accuracy.csv
+    check accuracy_predicts_radiosity grep -q '"flip_truth_without": 0' bakes.json
+    expect accuracy_of_other_bakes 1 'bake-choices.*--restart' accuracy cube "${tiny[@]}" -o bakes --rounds 1
+  fi
   # Goal: instructions are counted if possible; otherwise nothing else is lost. Method: the baseline's row; if the CPU does
   # not count them, a valgrind that fails, one that is interrupted, and a program without symbols. Skipped if valgrind is not
   # installed or cannot run this program (an emulated CPU, a sanitizer).

@@ -25,14 +25,28 @@ expect quality_unknown 1 'draft, low, medium, high or best' render cornell "${sm
 expect quality_beside_a_budget 2 'excludes' render cornell "${small[@]}" --quality low --budget-ms 40 -o refused.png
 expect plan_shows_the_dial 0 '^  high .*samples 1 to 4, indirect auto to instant-radiosity' plan cornell
 expect plan_says_what_measures_it 0 'quality, built in; .pocketray accuracy. measures' plan cornell
+# Goal: plan says what baked radiosity would take, unless it is stored or there is nothing to solve.
+if "${run[@]}" bake --help 2>/dev/null | grep -q -- --radiosity && "${run[@]}" --help | grep -q '^ *accuracy '; then
+  expect plan_offers_radiosity 0 'would store 0.26 MiB or more; --prices predicts its time' plan cube
+  expect plan_offers_radiosity_as_json 0 '"bytes_at_least": 267740' plan cube --json -
+  if [ $# -eq 0 ]; then  # emulated, it takes minutes
+    expect plan_predicts_radiosity 0 'would take [0-9.]+ s here and store 0.26 MiB' plan cube --prices
+    "${run[@]}" bake cube --radiosity -o lit.pray >/dev/null 2>&1
+    "${run[@]}" plan lit.pray >lit.txt
+    check plan_offers_no_second_radiosity test "$(grep -c 'radiosity: not stored' lit.txt)" = 0
+  fi
+fi
 expect plan_has_the_dial_as_json 0 '"level": "best"' plan cornell --json -
 
 # Goal: where the scene's front was measured, levels are its points. Method: a front of two candidates in the cache; the
 # picture of each by name.
 if "${run[@]}" --help | grep -q '^ *accuracy '; then
   "${run[@]}" accuracy cube --size 16x12 --threads 2 --reference-samples 2 --rounds 1 -o sweep >/dev/null 2>&1
-  front=$(ls "$XDG_CACHE_HOME"/pocketray/*.front)
+  front=$(ls "$XDG_CACHE_HOME"/pocketray/*.front | grep -v -e '-2.front')
+  expect plan_knows_the_prices_of_this_machine 0 'priced_here": true' plan cube --threads 2 --json -
+  expect plan_says_that_prices_are_of_another 0 'with times of another machine or number of threads' plan cube --threads 1
   rest="depth=8 cut-off=0.5 texture-filter=scene normals=scene indirect=auto reconstruction=bicubic virtual-lights=64 selective=0 resolution=full light-tolerance=0.0625 environment-shadows=32"
+  rm "$XDG_CACHE_HOME"/pocketray/*-2.front
   printf "pocketray-front 2\nsamples=2 area-lights=1 $rest flip=.4 flip888=.3 ns=100\nsamples=9 area-lights=4 $rest flip=.2 flip888=.1 ns=1e4\n" >"$front"
   expect plan_shows_what_was_measured 0 '^  draft .*ꟻLIP 0.300 +samples 1 to 2, area-lights 4 to 1' plan cube
   expect plan_says_that_it_was_measured 0 'as .pocketray accuracy. measured this scene' plan cube

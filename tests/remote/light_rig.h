@@ -12,9 +12,9 @@ namespace pocketray {
 constexpr IndirectChoice kVirtual = indirect_choice(Effect::instant_radiosity),
                          kAmbient = indirect_choice(Effect::ambient);
 
-inline LightOptions by_effect(std::uint32_t pitch = 6) {
+inline LightOptions by_effect() {
   LightOptions light;
-  light.split = SplitKind::effect, light.indirect = kVirtual, light.pitch = pitch;
+  light.split = SplitKind::effect, light.indirect = kVirtual;
   light.wait_ns = 10'000'000'000;
   return light;
 }

@@ -24,6 +24,7 @@ TEST_CASE("accuracy_refuses_damaged_files") {
   f.ns_per_pixel = {12.25, 1e9 / 3};
   state.points["samples 4"] = f;
   f.instructions_per_pixel = 7654.5, f.bytes_per_frame = 4321.5;
+  f.stored_bytes = 87654.5, f.bake_seconds = 34.125;
   state.points["samples 9"] = f;
   state.counted = "by hand";
   REQUIRE(save_state(folder.path, state).ok);
@@ -36,6 +37,9 @@ TEST_CASE("accuracy_refuses_damaged_files") {
   CHECK(read.points.at("samples 9").instructions_per_pixel == 7654.5);
   CHECK(std::isnan(read.points.at("samples 4").bytes_per_frame));
   CHECK(read.points.at("samples 9").bytes_per_frame == 4321.5);
+  CHECK(std::isnan(read.points.at("samples 4").stored_bytes));
+  CHECK(read.points.at("samples 9").stored_bytes == 87654.5);
+  CHECK(read.points.at("samples 9").bake_seconds == 34.125);
   CHECK(read.points.at("samples 9").truth.flip == 0.0625);
   CHECK(read.points.at("samples 9").truth.other == f.truth.other);
   CHECK(read.points.at("samples 9").model.one == f.model.one);
@@ -54,9 +58,9 @@ TEST_CASE("accuracy_refuses_damaged_files") {
     CHECK(std::string(status.message).find("--restart") != std::string::npos);
   }
   const std::pair<const char*, const char*> senseless[] = {
-      {"12.25", "1e300"},  {"12.25", "-1.0"},  {"12.25", "\"none\""}, {"12.25", "0"},
-      {"7654.5", "1e300"}, {"7654.5", "-1.0"}, {"4321.5", "1e300"},   {"4321.5", "-1.0"},
-      {"0.0625", "1.5"},   {"0.375", "1.5"},   {"0.375", ""}};
+      {"12.25", "1e300"}, {"12.25", "-1.0"},   {"12.25", "\"none\""}, {"12.25", "0"},      {"7654.5", "1e300"},
+      {"7654.5", "-1.0"}, {"4321.5", "1e300"}, {"4321.5", "-1.0"},    {"87654.5", "-1.0"}, {"34.125", "1e300"},
+      {"0.0625", "1.5"},  {"0.375", "1.5"},    {"0.375", ""}};
   for (const auto& change : senseless) {
     const char *figure = change.first, *other = change.second;
     CAPTURE(other);

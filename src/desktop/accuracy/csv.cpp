@@ -26,7 +26,7 @@ std::string sweep_csv(const Sweep& sweep) {
   std::string csv =
       "knob,value,ns_per_pixel,ns_per_pixel_low,ns_per_pixel_high,flip_model,rmse,rel_mse,p99,max,bias,psnr,pareto,"
       "flip_before,time_ratio,time_ratio_low,time_ratio_high,instructions_per_pixel,bytes_per_frame,default,missing,"
-      "note,flip_truth,flip_rgb565,flip_rgb565_dithered,flip_rgb888,indirect\n";
+      "note,flip_truth,flip_rgb565,flip_rgb565_dithered,flip_rgb888,stored_bytes,bake_seconds,indirect\n";
   for (const Measured& m : sweep.measured) {
     bool there = m.missing.empty();
     const double figures[] = {m.ns_per_pixel.value, m.ns_per_pixel.low, m.ns_per_pixel.high, m.model.flip,
@@ -41,6 +41,7 @@ std::string sweep_csv(const Sweep& sweep) {
     csv += std::string(m.is_default ? ",1," : ",0,") + csv_field(m.missing) + ',' + csv_field(m.note) + ',' +
            (there ? number(m.truth.flip) : "");
     for (double flip : m.flip_as) csv += ',' + (there ? number(flip) : "");
+    for (double figure : {m.stored_bytes, m.bake_seconds}) csv += ',' + (there ? number(figure) : "");
     csv += ',' + csv_field(m.indirect) + '\n';
   }
   return csv;

@@ -138,6 +138,17 @@ std::string slope_text(const KnobFigures& knob) {
   return text + (knob.theory.empty() ? "" : "; theory: " + knob.theory);
 }
 
+std::string radiosity_text(const Sweep& sweep) {
+  const RadiosityPrediction& p = sweep.radiosity;
+  if (!p.why_not.empty()) return "bake --radiosity is not predicted: " + p.why_not;
+  if (!std::isfinite(p.flip)) return "bake --radiosity is not predicted";
+  const std::string frame = figure(ms_of(sweep, p.ns_per_pixel)) + " ms";
+  return "bake --radiosity would take " + figure(p.seconds, 2) + " s here, store " +
+         format("%.2f MiB", p.bytes / (1 << 20)) + " and give ꟻLIP " + figure(p.flip, 2) + " in " + frame +
+         " a frame, where the baseline has " + figure(p.flip_without, 2) + " in " +
+         figure(ms_of(sweep, sweep.measured.front().ns_per_pixel.value)) + " ms (predicted)";
+}
+
 std::vector<const KnobFigures*> knobs_by_price(const Sweep& sweep) {
   std::vector<const KnobFigures*> knobs;
   for (const KnobFigures& knob : sweep.knobs) knobs.push_back(&knob);

@@ -49,6 +49,9 @@ bool is_paid_in_bytes(const KnobEnds& ends);
 // omitted.
 std::string slope_text(const KnobFigures& knob);
 
+// Says in one line what `bake --radiosity` would give, or why nothing.
+std::string radiosity_text(const Sweep& sweep);
+
 // Returns the knobs by rising price of accuracy, then those whose gain cannot be claimed, then those without a price.
 std::vector<const KnobFigures*> knobs_by_price(const Sweep& sweep);
 

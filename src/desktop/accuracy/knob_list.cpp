@@ -89,6 +89,7 @@ std::vector<Knob> make_knobs() {
 #endif
   };
   knobs.insert(knobs.end(), others.begin(), others.end());
+  for (Knob& knob : bake_knobs()) knobs.push_back(std::move(knob));
   return knobs;
 }
 
@@ -106,6 +107,7 @@ const std::vector<Knob>& knob_list() {
 }
 
 Judge judge_of(const Knob& knob) {
+  if (is_bake_choice(knob)) return knob.effect == kRadiosityEffect ? Judge::truth : Judge::model;
   return knob.needs != 0 && (knob.needs & ~kIndirectEffects) == 0 ? Judge::truth : Judge::model;
 }
 

@@ -24,12 +24,31 @@ static_assert(sizeof kOutputFormats / sizeof kOutputFormats[0] == kOutputFormatC
 // Index of the format with that name, or -1.
 int find_output_format(const std::string& name);
 
+// How `bake` stores a scene, where a sweep varies it.
+struct BakeChoices {
+  std::uint32_t texture_side_max = 512;
+  bool has_mip_maps = true, is_compressed = false;
+  float crease_angle = 40;
+  std::uint32_t patch_count = 0;  // of radiosity; 0: what the scene has
+};
+
+// A scene's part in these choices.
+struct BakeableScene {
+  bool is_model = false;           // it is imported, so its textures and normals could be imported otherwise
+  std::uint32_t texture_side = 0;  // the longest, up to the largest --texture-max of the sweep; 0: no textures
+  bool has_creases = false;        // its normals depend on --crease-angle
+  bool is_lit = false;             // it has light of its own and stores no radiosity
+};
+
+constexpr const char* kRadiosityEffect = "radiosity";
+
 // Everything that a knob can change.
 struct Configuration {
   Settings settings;
   int output = 1;                                        // index into kOutputFormats: the handheld's
   std::uint32_t sphere_columns = kCornellSphereColumns;  // of cornell's sphere
   bool near_lossless = false;                            // rows come from a render server, coded with small errors
+  BakeChoices bake;
 };
 
 struct Knob {
@@ -46,9 +65,24 @@ struct Knob {
   double (*price)(double value) = nullptr;  // rough relative frame time; null: the value hardly matters
   bool alone = false;                       // never varied together with others
   bool is_setting = true;                   // can change from frame to frame
+  // Of choices of `bake`: why the scene cannot be baked with that value, or would be the baseline; empty: it can.
+  std::function<std::string(const BakeableScene& scene, double value)> bake_unfit;
 };
 
 const std::vector<Knob>& knob_list();
+
+// The choices of `bake`, at the end of the list.
+std::vector<Knob> bake_knobs();
+// Largest --texture-max of the sweep.
+constexpr std::uint32_t kTextureSideSwept = 1024;
+inline bool is_bake_choice(const Knob& knob) { return knob.bake_unfit != nullptr; }
+// The scene as it was opened, which needs no bake.
+inline bool is_as_opened(const BakeChoices& c) {
+  const BakeChoices opened;
+  return c.texture_side_max == opened.texture_side_max && c.has_mip_maps == opened.has_mip_maps &&
+         c.is_compressed == opened.is_compressed && c.crease_angle == opened.crease_angle &&
+         c.patch_count == opened.patch_count;
+}
 
 // The judge of its values: see KnobFigures.
 Judge judge_of(const Knob& knob);

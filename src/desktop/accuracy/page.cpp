@@ -199,6 +199,16 @@ std::string methods_section(const Sweep& sweep, const PagePictures& pictures) {
          pair(plot_figure(pictures, "indirect"), method_table(sweep));
 }
 
+// Describes how scenes were baked, if they were.
+std::string baked_method(const Sweep& sweep) {
+  for (const KnobFigures& knob : sweep.knobs)
+    if (knob.is_baked)
+      return " Choices of <code>bake</code> are measured on the scene as baked with them; what is stored is the whole "
+             "file, which a device loads as it is. The references show the largest textures. No file says what its "
+             "creases should look like, so those errors are differences from the usual angle.";
+  return "";
+}
+
 // Describes how rows were sent, if they were.
 std::string sent_method(const Sweep& sweep) {
   for (const Measured& m : sweep.measured)
@@ -233,7 +243,7 @@ std::string method_of(const Sweep& sweep) {
               ? std::string(
                     " With fewer than six rounds all intervals are ranges of the rounds, which cover less than 95 %.")
               : std::string()) +
-         sent_method(sweep) +
+         sent_method(sweep) + baked_method(sweep) +
          "</p>\n<p class=\"soft\">A slope is the "
          "exponent s of RMSE² = floor² + (c timeˢ)², fitted in each round to all values of a knob by least squares of "
          "relative differences, where the reference can tell the errors apart: the median of the rounds, with its 95 % "
@@ -255,6 +265,7 @@ std::string page_of(const Sweep& sweep, const PagePictures& pictures) {
           "the standard "
           "error of their difference. <code>--budget-ms</code> and <code>--flip-max</code> choose from it.</p>\n" +
           pair(plot_figure(pictures, "front"), front_table(sweep, sweep.judge)) + format_section(sweep);
+  text += "<p>Baked radiosity: " + escaped(radiosity_text(sweep)) + ".</p>\n";
   text += other_section(sweep, pictures) + methods_section(sweep, pictures);
   std::string links;
   for (const KnobFigures& knob : sweep.knobs)

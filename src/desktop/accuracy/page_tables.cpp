@@ -48,10 +48,13 @@ std::string name_of(const Measured& m) {
 
 std::string bytes_text(double bytes) { return std::isfinite(bytes) ? format("%.0f", bytes) : "–"; }
 
+std::string stored_text(double bytes) { return std::isfinite(bytes) ? format("%.2f MiB", bytes / (1 << 20)) : "–"; }
+
 std::string end_text(const Sweep& sweep, const KnobFigures& knob, const Measured* m, bool in_bytes) {
   if (!m) return cell("–");
   std::string price =
       in_bytes ? bytes_text(m->bytes_per_frame) + " bytes" : figure(ms_of(sweep, m->ns_per_pixel.value)) + " ms";
+  if (knob.is_baked) price += ", " + stored_text(m->stored_bytes);
   return cell("<b>" + escaped(m->value) + "</b><br /><small>" +
               row_link(sweep, *m, price + ", FLIP " + figure(flip_by(knob, *m))) + "</small>");
 }
@@ -107,11 +110,14 @@ std::string method_table(const Sweep& sweep) {
 std::string value_table(const Sweep& sweep, const std::string& knob) {
   std::vector<const Measured*> values = values_of(sweep, knob);
   bool counted = false, sent = is_paid_in_bytes(ends_of(sweep, knob));
+  bool baked = false;
+  for (const KnobFigures& k : sweep.knobs) baked = baked || (k.is_baked && k.name == knob);
   for (const Measured* m : values) counted = counted || std::isfinite(m->instructions_per_pixel);
   std::vector<std::string> names = {"value", "ms per frame", "× baseline", "FLIP to truth", "to model", "before output",
                                     "RMSE",  "rel. MSE",     "p99",        "max",           "bias",     "PSNR, dB"};
   if (counted) names.push_back("instructions per pixel");
   if (sent) names.push_back("bytes per frame");
+  if (baked) names.insert(names.end(), {"stored", "baked in, s"});
   std::string rows;
   for (const Measured* m : values) {
     rows += m->is_default ? "<tr class=\"standard\">" : "<tr>";
@@ -131,6 +137,7 @@ std::string value_table(const Sweep& sweep, const std::string& knob) {
       rows += claimed_cell(text, claimed);
     if (counted) rows += cell(figure(m->instructions_per_pixel, 4));
     if (sent) rows += cell(bytes_text(m->bytes_per_frame));
+    if (baked) rows += cell(stored_text(m->stored_bytes)) + cell(figure(m->bake_seconds, 2));
     rows += "</tr>\n";
   }
   return boxed(headings(names), rows);

@@ -45,8 +45,11 @@ struct Measured {
   Interval time_ratio;  // relative to the baseline of the same round
   double instructions_per_pixel = kNotMeasured;
   double bytes_per_frame = kNotMeasured;  // of its rows from a render server; only for the baseline and near-lossless
-  Distance truth, model;                  // as shown on screen: after quantisation and dither
-  double flip_before = kNotMeasured;      // mean against the model, before these
+  // Of the baseline and of choices of `bake`: bytes of the .pray file, which a device loads as it is, and the time to
+  // bake it.
+  double stored_bytes = kNotMeasured, bake_seconds = kNotMeasured;
+  Distance truth, model;              // as shown on screen: after quantisation and dither
+  double flip_before = kNotMeasured;  // mean against the model, before these
   // Against the truth, as each output format shows it.
   std::array<double, kOutputFormatCount> flip_as = {kNotMeasured, kNotMeasured, kNotMeasured};
   PictureErrors errors;   // against the model: exposed linear light, clamped to the display range [0, 1]
@@ -70,6 +73,7 @@ struct KnobFigures {
   Interval slope;
   double slope_misfit = 0;
   bool has_slope = false;
+  bool is_baked = false;              // a choice of `bake`
   double ms_per_flip = kNotMeasured;  // ms per frame for 0.01 of ꟻLIP, from the knob's worst end to its best
 };
 
@@ -108,6 +112,16 @@ struct ReferenceFigures {
   double rmse = 0, flip = 0;
 };
 
+// What `bake --radiosity` would give, predicted.
+struct RadiosityPrediction {
+  std::string why_not;                 // why it would give nothing; empty: see below
+  double seconds = 0;                  // of the bake, on this machine
+  double bytes = 0;                    // added to the .pray file
+  double ns_per_pixel = 0;             // of frames
+  double flip = kNotMeasured;          // to the truth, from a solution of few patches
+  double flip_without = kNotMeasured;  // the baseline's
+};
+
 struct Sweep {
   std::string scene, machine;  // "cornell"; "2 threads, avx512"
   std::uint32_t width = 0, height = 0;
@@ -122,7 +136,8 @@ struct Sweep {
   std::vector<KnobFigures> knobs;
   std::vector<Strip> strips;
   std::vector<LevelPicture> quality;  // by level, the least accurate first; empty: there is no front
-  std::vector<std::string> notes;     // one line each: skipped knobs and why, …
+  RadiosityPrediction radiosity;
+  std::vector<std::string> notes;  // one line each: skipped knobs and why, …
 };
 
 // An RMSE below this many times the reference's own is not claimed.

@@ -36,6 +36,7 @@ Measured measured_of(const SweepPoint& point, const PointFigures& f, const Point
   m.ns_per_pixel.low = std::min(m.ns_per_pixel.low, m.ns_per_pixel.value);
   m.ns_per_pixel.high = std::max(m.ns_per_pixel.high, m.ns_per_pixel.value);
   m.instructions_per_pixel = f.instructions_per_pixel, m.bytes_per_frame = f.bytes_per_frame;
+  m.stored_bytes = f.stored_bytes, m.bake_seconds = f.bake_seconds;
   m.truth = f.truth, m.model = f.model, m.flip_before = f.flip_before, m.flip_as = f.flip_as, m.errors = f.errors;
   return m;
 }
@@ -69,7 +70,7 @@ KnobFigures figures_of(const SweptKnob& swept, const SweepPlan& plan, const std:
   const Knob& knob = *swept.knob;
   KnobFigures k;
   k.name = knob.name, k.what = knob.what, k.effect = knob.effect, k.theory = knob.theory;
-  k.judge = judge_of(knob);
+  k.judge = judge_of(knob), k.is_baked = is_bake_choice(knob);
   const Measured *worst = nullptr, *best = nullptr;
   bool one_renderer = true;
   std::size_t best_index = 0;

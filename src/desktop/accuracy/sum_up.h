@@ -12,6 +12,7 @@ struct PointFigures {
   std::array<double, kOutputFormatCount> flip_as = {kNotMeasured, kNotMeasured, kNotMeasured};
   PictureErrors errors;
   double instructions_per_pixel = kNotMeasured, bytes_per_frame = kNotMeasured;
+  double stored_bytes = kNotMeasured, bake_seconds = kNotMeasured;
   std::vector<double> ns_per_pixel;  // one per round
 };
 

@@ -21,7 +21,7 @@ std::vector<const SweepPoint*> levels_of(const SweepPlan& plan, const SweptKnob&
 }
 
 void add_knob(const Knob& knob, const Configuration& baseline, const std::function<Status(const Settings&)>& can_be_had,
-              SweepPlan* plan) {
+              const BakeableScene* bakeable, SweepPlan* plan) {
   std::vector<double> values = knob_values(knob, baseline);
   plan->knobs.push_back({&knob, plan->points.size(), values.size()});
   for (double value : values) {
@@ -31,8 +31,20 @@ void add_knob(const Knob& knob, const Configuration& baseline, const std::functi
     point.price = relative_price(knob, baseline, value);
     Status status = can_be_had(point.configuration.settings);
     if (!status.ok) point.missing = status.message;
+    if (is_bake_choice(knob) && !point.is_default) point.missing = knob.bake_unfit(*bakeable, value);
     plan->points.push_back(point);
   }
+}
+
+// Returns whether any value but the baseline's can be baked; otherwise *why receives the reason.
+bool bake_applies(const Knob& knob, const Configuration& baseline, const BakeableScene& bakeable, std::string* why) {
+  for (double value : knob.values) {
+    if (value == knob.get(baseline)) continue;
+    const std::string unfit = knob.bake_unfit(bakeable, value);
+    if (unfit.empty()) return true;
+    *why = unfit;
+  }
+  return false;
 }
 
 void add_covering_set(const Configuration& baseline, double price_limit, SweepPlan* plan) {
@@ -160,13 +172,14 @@ const char* name_of_method(EffectMask effects) {
 SweepPlan plan_sweep(const std::string& scene, const EffectPlan& effects, const Configuration& baseline,
                      const std::function<Status(const Settings&)>& can_be_had, double price_limit,
                      const std::vector<Settings>& ladder,
-                     const std::function<EffectMask(const Settings&)>& effects_with) {
+                     const std::function<EffectMask(const Settings&)>& effects_with, const BakeableScene* bakeable) {
   SweepPlan plan;
   plan.points.push_back({"baseline", "", baseline, 1, "", true, true, ""});
   for (const Knob& knob : knob_list()) {
     std::string why;
-    if (knob_applies(knob, scene, effects, &why))
-      add_knob(knob, baseline, can_be_had, &plan);
+    if (is_bake_choice(knob) && !bakeable) continue;
+    if (is_bake_choice(knob) ? bake_applies(knob, baseline, *bakeable, &why) : knob_applies(knob, scene, effects, &why))
+      add_knob(knob, baseline, can_be_had, bakeable, &plan);
     else
       plan.notes.push_back(std::string(knob.name) + " is skipped: " + why);
   }
@@ -175,7 +188,10 @@ SweepPlan plan_sweep(const std::string& scene, const EffectPlan& effects, const 
     add_settings(settings, setting_knobs(), can_be_had, kLadderLimit * price_limit, &plan);
   if (!effects_with) return plan;
   add_methods(can_be_had, price_limit, effects_with, &plan);
-  for (SweepPoint& point : plan.points) point.indirect = name_of_method(effects_with(point.configuration.settings));
+  for (SweepPoint& point : plan.points)
+    point.indirect = point.configuration.bake.patch_count > 0
+                         ? kRadiosityEffect
+                         : name_of_method(effects_with(point.configuration.settings));
   return plan;
 }
 

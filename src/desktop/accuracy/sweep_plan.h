@@ -33,10 +33,12 @@ struct SweepPlan {
 
 // `can_be_had` fails if settings are not available in the scene. `price_limit`: maximum frame time of combinations,
 // relative to the baseline. `ladder`: settings to measure besides the covering set. `effects_with`: the scene's effects
-// with other settings; without it, methods of indirect light are not compared.
+// with other settings; without it, methods of indirect light are not compared. `bakeable`: null to leave out the
+// choices of `bake`.
 SweepPlan plan_sweep(const std::string& scene, const EffectPlan& effects, const Configuration& baseline,
                      const std::function<Status(const Settings&)>& can_be_had, double price_limit,
                      const std::vector<Settings>& ladder = {},
-                     const std::function<EffectMask(const Settings&)>& effects_with = nullptr);
+                     const std::function<EffectMask(const Settings&)>& effects_with = nullptr,
+                     const BakeableScene* bakeable = nullptr);
 
 }  // namespace pocketray

@@ -59,6 +59,33 @@ void make_consistent(const std::vector<Patch>& patches, const std::vector<double
 
 }  // namespace
 
+void find_factor_row(const SceneRays& rays, const std::vector<Patch>& patches, std::uint32_t i, float* row,
+                     float* row_there) {
+  CHECK(i < patches.size() && row != nullptr);
+  const Backs backs = rays.has_sheets ? Backs::of_bodies_hide : Backs::hide;
+  for (std::uint32_t j = 0; j < patches.size(); ++j) {
+    if (i == j) continue;
+    const Vec3d way = patches[j].centre - patches[i].centre;
+    const double near = 3 * (patches[i].radius + patches[j].radius);
+    const bool is_near = dot(way, way) < near * near, is_close = dot(way, way) < kClose * kClose * near * near;
+    double sum = 0, sum_there = 0;
+    int samples = 0;
+    const int count = is_close ? static_cast<int>(patches[i].light_samples.size()) : kPatchSamples;
+    for (int k = 0; k < count; k += is_near ? 1 : 2) {
+      const PatchSample& at = is_close ? patches[i].light_samples[static_cast<std::size_t>(k)] : patches[i].samples[k];
+      const Receiver from = {at.point, at.normal, patches[i].lift};
+      const double factor = patch_form_factor(at.point, at.normal, patches[j]);
+      ++samples;
+      if (!(factor > 0)) continue;
+      const VisibleShare share =
+          visible_share(rays, from, patches[j], factor, i + j + static_cast<std::uint32_t>(k), backs);
+      sum += factor * share.here, sum_there += factor * share.there;
+    }
+    row[j] = static_cast<float>(sum / samples);
+    if (row_there) row_there[j] = static_cast<float>(sum_there / samples);
+  }
+}
+
 FormFactors find_form_factors(const SceneRays& rays, const std::vector<Patch>& patches,
                               const std::vector<double>& closed, std::uint32_t threads,
                               const SolverProgress& progress) {
@@ -68,33 +95,12 @@ FormFactors find_form_factors(const SceneRays& rays, const std::vector<Patch>& p
   f.rows.assign(std::size_t(f.count) * f.count, 0);
   std::vector<float> there(rays.has_sheets ? f.rows.size() : 0);
   f.is_reciprocal = there.empty();
-  const Backs backs = rays.has_sheets ? Backs::of_bodies_hide : Backs::hide;
   std::atomic<std::uint32_t> done{0};
   std::atomic<bool> stop{false};
   parallel_for(f.count, threads, [&](std::uint32_t i) {
     if (stop) return;
-    for (std::uint32_t j = 0; j < f.count; ++j) {
-      if (i == j) continue;
-      const Vec3d way = patches[j].centre - patches[i].centre;
-      const double near = 3 * (patches[i].radius + patches[j].radius);
-      const bool is_near = dot(way, way) < near * near, is_close = dot(way, way) < kClose * kClose * near * near;
-      double sum = 0, sum_there = 0;
-      int samples = 0;
-      const int count = is_close ? static_cast<int>(patches[i].light_samples.size()) : kPatchSamples;
-      for (int k = 0; k < count; k += is_near ? 1 : 2) {
-        const PatchSample& at =
-            is_close ? patches[i].light_samples[static_cast<std::size_t>(k)] : patches[i].samples[k];
-        const Receiver from = {at.point, at.normal, patches[i].lift};
-        const double factor = patch_form_factor(at.point, at.normal, patches[j]);
-        ++samples;
-        if (!(factor > 0)) continue;
-        const VisibleShare share =
-            visible_share(rays, from, patches[j], factor, i + j + static_cast<std::uint32_t>(k), backs);
-        sum += factor * share.here, sum_there += factor * share.there;
-      }
-      f.rows[std::size_t(i) * f.count + j] = static_cast<float>(sum / samples);
-      if (!there.empty()) there[std::size_t(i) * f.count + j] = static_cast<float>(sum_there / samples);
-    }
+    const std::size_t row = std::size_t(i) * f.count;
+    find_factor_row(rays, patches, i, &f.rows[row], there.empty() ? nullptr : &there[row]);
     if (!progress(static_cast<double>(++done) / f.count)) stop = true;
   });
   if (stop) return {};

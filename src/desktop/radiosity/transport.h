@@ -19,6 +19,10 @@ struct FormFactors {
 FormFactors find_form_factors(const SceneRays& rays, const std::vector<Patch>& patches,
                               const std::vector<double>& closed, std::uint32_t threads, const SolverProgress& progress);
 
+// Fᵢⱼ of one patch for every j, as found from i alone. `row_there`, unless null, receives Fⱼᵢ·Aⱼ/Aᵢ as found from i.
+void find_factor_row(const SceneRays& rays, const std::vector<Patch>& patches, std::uint32_t i, float* row,
+                     float* row_there);
+
 // Light as radiance; energy as radiance × area, summed over the channels.
 struct Exchange {
   std::vector<Vec3d> radiance;  // leaves a patch: emitted and reflected

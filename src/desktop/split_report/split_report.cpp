@@ -2,9 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <iterator>
 
 #include "base/check.h"
+#include "desktop/accuracy/display.h"
+#include "desktop/accuracy/flip.h"
 #include "desktop/split_report/row_streams.h"
+#include "engine/frame.h"
+#include "engine/light_map.h"
 #include "remote/client/frame.h"
 #include "session/camera_control.h"
 #include "session/interrupt.h"
@@ -19,6 +25,9 @@ constexpr std::uint32_t kSkippedFrames = 2;  // at the start of a lap
 constexpr std::uint32_t kChosenLaps = 2;
 constexpr double kPaperTransferNs = 400;  // T_t of [Aranha07] sec. 4
 constexpr int kRefinements = 2, kPaperRuns = 2, kPaperRows = 6;
+
+// Frames per map of a server's light, as measured. The first is the default.
+constexpr std::uint32_t kLightEvery[] = {1, 2, 4, 8};
 
 // While it exists, the device and its servers trace frames whole.
 struct WholeFrames {
@@ -43,14 +52,15 @@ struct Experiment {
   std::uint32_t frame = 0;  // along the path
   std::uint64_t* frames_done = nullptr;
   Progress* progress = nullptr;
+  std::function<void(const Client& client, std::uint32_t step)> shown;  // called with each measured frame; may be null
   ~Experiment() {
     close_client(&client);
     if (setup.device) setup.device->view.camera = camera.home;  // for the next experiment's path
   }
 };
 
-Status open_experiment(const SplitSetup& setup, SplitKind kind, Progress* progress, std::uint64_t* frames_done,
-                       Experiment* e) {
+Status open_experiment(const SplitSetup& setup, const LightOptions& light, Progress* progress,
+                       std::uint64_t* frames_done, Experiment* e) {
   CHECK(setup.device != nullptr && setup.store != nullptr);
   CHECK(setup.server_count >= 1 && setup.server_count <= kServerCountMax);
   CHECK_GT(setup.frame_count, 0u);
@@ -71,7 +81,7 @@ Status open_experiment(const SplitSetup& setup, SplitKind kind, Progress* progre
   options.format = setup.format;
   options.pace.ns_per_pixel = setup.device_ns, options.pace.prepare_ns = setup.device_prepare_ns;
   options.own_light_pixel_ns = setup.own_light_ns;
-  options.light.split = kind, options.light.indirect = renderer->settings.indirect;
+  options.light = light, options.light.indirect = renderer->settings.indirect;
   options.decode = setup.decode;
   options.check_count = 0;  // measures the split alone: spot checks would add 1 %
   e->memory.resize(client_need(renderer->settings, setup.format, setup.server_count, options.light) + kArenaAlignment);
@@ -81,15 +91,26 @@ Status open_experiment(const SplitSetup& setup, SplitKind kind, Progress* progre
   return success();
 }
 
+Status open_experiment(const SplitSetup& setup, SplitKind kind, Progress* progress, std::uint64_t* frames_done,
+                       Experiment* e) {
+  LightOptions light;
+  light.split = kind;
+  return open_experiment(setup, light, progress, frames_done, e);
+}
+
+// Aims the device at a step of the path. Returns its time.
+Status aim(const CameraControl& path, const SplitSetup& setup, std::uint32_t step, double* seconds) {
+  *seconds = step / static_cast<double>(setup.device->scene.info.frames_per_second);
+  if (setup.orbit_degrees == 0) return success();
+  return set_camera(setup.device, orbited_camera(path, static_cast<float>(step) * setup.orbit_degrees));
+}
+
 // Renders the next frame along the path.
 Status next_frame(Experiment* e, bool* complete) {
   std::uint32_t step = e->frame++ % (kSkippedFrames + e->setup.frame_count);
   Renderer* renderer = e->setup.device;
-  if (e->setup.orbit_degrees != 0) {
-    Camera camera = orbited_camera(e->camera, static_cast<float>(step) * e->setup.orbit_degrees);
-    RETURN_IF_ERROR(set_camera(renderer, camera));
-  }
-  double seconds = step / static_cast<double>(renderer->scene.info.frames_per_second);
+  double seconds;
+  RETURN_IF_ERROR(aim(e->camera, e->setup, step, &seconds));
   RETURN_IF_ERROR(render_frame(renderer, &e->client, seconds, &interrupted, complete));
   show_progress(e->progress, ++*e->frames_done);
   return success();
@@ -122,6 +143,7 @@ Status measure_point(Experiment* e, std::uint32_t lap_count, SplitPoint* point, 
     RETURN_IF_ERROR(next_frame(e, complete));
     if (!*complete || !counts) continue;
     const FrameShare& share = e->client.share;
+    if (e->shown) e->shown(e->client, (e->frame - 1) % lap);
     e->times[measured++] = share.measured_ns / (double(settings.width) * settings.height);
     point->m += double(share.device_rows) / settings.height / frame_count;
     point->device_pixels += double(share.device_pixels) / frame_count;
@@ -167,20 +189,73 @@ std::size_t least_of(const std::vector<SplitPoint>& sweep) {
   return static_cast<std::size_t>(std::min_element(sweep.begin(), sweep.end(), faster) - sweep.begin());
 }
 
-// Measures frames shared in another way, in a world of their own.
-Status measure_kind(const SplitSetup& setup, SplitKind kind, std::uint64_t* frames_done, Progress* progress,
-                    SplitPoint* point, bool* complete) {
+using Shown = std::function<void(const Client& client, std::uint32_t step)>;
+
+// Measures frames shared in another way, in a world of their own. `shown` may be null.
+Status measure_kind(const SplitSetup& setup, const LightOptions& light, std::uint32_t lap_count, const Shown& shown,
+                    std::uint64_t* frames_done, Progress* progress, SplitPoint* point, bool* complete) {
   const Settings kept = setup.device->settings;
   Status status;
   SplitPoint measured;
   {
     Experiment e;
-    status = open_experiment(setup, kind, progress, frames_done, &e);
+    status = open_experiment(setup, light, progress, frames_done, &e);
     if (status.ok) status = settle(&e, complete);
-    if (status.ok && *complete) status = measure_point(&e, kChosenLaps, &measured, complete, nullptr);
+    e.shown = shown;
+    if (status.ok && *complete) status = measure_point(&e, lap_count, &measured, complete, nullptr);
   }
   if (status.ok && *complete) *point = measured;
   const Status back = change_settings(setup.device, kept);  // the client has chosen the device's indirect light
+  return status.ok ? back : status;
+}
+
+// Frames of the path as the device alone shows them, encoded for ꟻLIP.
+struct LightFrames {
+  OutputFormat output;
+  std::uint32_t width, height;
+  std::vector<std::vector<float>> steps;
+};
+
+double flip_of(const LightFrames& frames, std::uint32_t step, const std::uint8_t* pixels) {
+  CHECK_LT(step, frames.steps.size());
+  const Levels levels = unpacked_levels(pixels, frames.width, frames.height, frames.output.format);
+  return mean_of(
+      flip_errors(frames.steps[step], encoded_levels(levels), frames.width, frames.height, kHandheldPixelsPerDegree));
+}
+
+// Renders the path on the device alone: with the settings' light into *frames, and with its own light, whose mean
+// distance from these *own_flip receives.
+Status render_path(const SplitSetup& setup, std::uint64_t* frames_done, Progress* progress, LightFrames* frames,
+                   double* own_flip, bool* complete) {
+  Renderer* device = setup.device;
+  const Settings kept = device->settings;
+  frames->output = kOutputFormats[find_output_format(setup.format == WireFormat::rgb565 ? "rgb565" : "rgb888")];
+  frames->width = kept.width, frames->height = kept.height;
+  const CameraControl path = make_camera_control(device->view.camera, device->accel.built.bounds);
+  Settings own = kept;
+  own.indirect = own_indirect(device->scene);
+  Status status;
+  *own_flip = 0;
+  for (const Settings& settings : {kept, own}) {
+    if (status.ok) status = change_settings(device, settings);
+    for (std::uint32_t step = 0; status.ok && *complete && step < kSkippedFrames + setup.frame_count; ++step) {
+      double seconds;
+      status = aim(path, setup, step, &seconds);
+      if (status.ok) status = render_frame(device, seconds, Aov::none, &interrupted);
+      *complete = !interrupted;
+      if (!status.ok || !*complete) break;
+      show_progress(progress, ++*frames_done);
+      const std::vector<std::uint8_t> pixels =
+          packed_pixels(device->image.data, frames->width, frames->height, device->view.exposure, frames->output);
+      if (settings.indirect == kept.indirect)
+        frames->steps.push_back(
+            encoded_levels(unpacked_levels(pixels.data(), frames->width, frames->height, frames->output.format)));
+      else if (step >= kSkippedFrames)
+        *own_flip += flip_of(*frames, step, pixels.data()) / setup.frame_count;
+    }
+  }
+  device->view.camera = path.home;
+  const Status back = change_settings(device, kept);
   return status.ok ? back : status;
 }
 
@@ -264,9 +339,44 @@ Status measure_effects(const SplitSetup& setup, Progress* progress, SplitFigures
   CHECK_GT(setup.own_light_ns, 0);
   std::uint64_t frames_done = 0;
   bool complete = true;
-  RETURN_IF_ERROR(measure_kind(setup, SplitKind::effect, &frames_done, progress, &figures->effect, &complete));
+  LightOptions light;
+  light.split = SplitKind::effect;
+  RETURN_IF_ERROR(
+      measure_kind(setup, light, kChosenLaps, nullptr, &frames_done, progress, &figures->effect, &complete));
   if (!complete) return success();
-  return measure_kind(setup, SplitKind::automatic, &frames_done, progress, &figures->both, &complete);
+  light.split = SplitKind::automatic;
+  return measure_kind(setup, light, kChosenLaps, nullptr, &frames_done, progress, &figures->both, &complete);
+}
+
+std::uint64_t light_frame_count(const SplitSetup& setup) {
+  const std::uint64_t lap = kSkippedFrames + setup.frame_count;
+  return std::size(kLightEvery) * (4 + 3 * lap) + 2 * lap;
+}
+
+Status measure_light(const SplitSetup& setup, Progress* progress, SplitFigures* figures) {
+  CHECK_GT(setup.own_light_ns, 0);
+  std::uint64_t frames_done = 0;
+  bool complete = true;
+  LightFrames frames;
+  LightMapPoint own;
+  own.ns_per_pixel = setup.own_light_ns;
+  RETURN_IF_ERROR(render_path(setup, &frames_done, progress, &frames, &own.flip, &complete));
+  if (complete) figures->light.push_back(own);
+  for (std::uint32_t every : kLightEvery) {
+    if (!complete) break;
+    LightOptions light;
+    light.split = SplitKind::effect, light.every = every;
+    LightMapPoint point;
+    point.every = every;
+    SplitPoint measured;
+    const Shown shown = [&](const Client& client, std::uint32_t step) {
+      point.flip += flip_of(frames, step, merged_row(client, 0)) / setup.frame_count;
+    };
+    RETURN_IF_ERROR(measure_kind(setup, light, 1, shown, &frames_done, progress, &measured, &complete));
+    point.ns_per_pixel = measured.ns_per_pixel, point.light_bytes = measured.light_bytes;
+    if (complete) figures->light.push_back(point);
+  }
+  return success();
 }
 
 Status measure_paper(const SplitSetup& setup, Progress* progress, SplitFigures* figures) {

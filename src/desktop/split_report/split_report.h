@@ -45,6 +45,13 @@ struct SplitPoint {
   double by_effect = 0, light_bytes = 0;     // fraction of frames shared by effect; bytes of light
 };
 
+// A way to have light from a server (--split effect).
+struct LightMapPoint {
+  std::uint32_t every = 0;                   // frames per map; 0: no server
+  double ns_per_pixel = 0, light_bytes = 0;  // of the median frame; of the mean frame
+  double flip = 0;                           // mean over frames, against the device alone with that light
+};
+
 struct PaperRow {
   const char* scene;  // the paper's scene, for its times; the rendered scene is the report's
   int processors;
@@ -61,6 +68,7 @@ struct SplitFigures {
   double whole_bytes = 0;          // bytes of a frame as a connection's first
   // Bytes of a frame, all rows, after its predecessor; error of `near`: root mean square, in levels of the format.
   double lossless_bytes = 0, near_bytes = 0, near_error = 0;
+  std::vector<LightMapPoint> light;  // the device's own light first
   std::vector<PaperRow> paper;
 };
 
@@ -74,6 +82,10 @@ Status measure_split(const SplitSetup& setup, std::uint32_t step_count, Progress
 // Measures frames shared by effect, and by whichever way is chosen, as `render --split effect` and `auto` do.
 std::uint64_t effect_frame_count(const SplitSetup& setup);
 Status measure_effects(const SplitSetup& setup, Progress* progress, SplitFigures* figures);
+// Measures frames shared by effect, with a map for each frame or for several: what that saves and how different the
+// frames look. An interrupt keeps finished points.
+std::uint64_t light_frame_count(const SplitSetup& setup);
+Status measure_light(const SplitSetup& setup, Progress* progress, SplitFigures* figures);
 // Measures Table 1 of [Aranha07] with the paper's T_m and T_s, and T_t = 400 ns per pixel for this scene's compressed
 // rows: this determines the link's bandwidth, without latency, since the paper states none. Frames are traced whole,
 // whatever the device's coherence.

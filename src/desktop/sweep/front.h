@@ -10,7 +10,8 @@ namespace pocketray {
 
 struct SweptFront {
   Front front;
-  std::string path;  // in the cache; empty: the scene could not be identified
+  std::string path;         // in the cache; empty: the scene could not be identified
+  std::string prices_path;  // of the prices on this machine, likewise
 };
 
 // Returns the Pareto front of the points that can be chosen between frames on a screen of the baseline's format. Errors

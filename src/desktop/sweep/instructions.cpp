@@ -221,10 +221,10 @@ Status render_for_valgrind(const AccuracyOptions& options) {
   o.common.threads = 1;  // several threads would divide the tiles of the last rows
   Isa isa;
   if (!parse_isa(o.common.isa, &isa).ok) o.common.isa = "";  // valgrind supports fewer
-  Rigs rigs = {o, {}};
+  Rigs rigs = {o, {}, {}};
   SweepPlan plan;
   RETURN_IF_ERROR(plan_rigs(&rigs, &plan));
-  rigs.by_columns[kCornellSphereColumns]->opened.renderer.view.exposure = exposure;
+  first_rig(rigs)->opened.renderer.view.exposure = exposure;
   std::map<std::string, const SweepPoint*> points;
   for (const SweepPoint& point : plan.points) points[id_of(point)] = &point;
   Rig* rig;
@@ -233,7 +233,7 @@ Status render_for_valgrind(const AccuracyOptions& options) {
     RETURN_IF_ERROR(rig_for(&rigs, points[id]->configuration, &rig));
   }
   Json answer = {{"isa", isa_name(active_isa())}};
-  for (auto& opened : rigs.by_columns) answer["pixels"] = take_part(opened.second.get());
+  for (auto& opened : rigs.by_scene) answer["pixels"] = take_part(opened.second.get());
   RETURN_IF_ERROR(save_text(o.counting_folder, kAnswerName, answer.dump()));
   for (const std::string& id : ids) {
     RETURN_IF_ERROR(rig_for(&rigs, points[id]->configuration, &rig));

@@ -1,3 +1,4 @@
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "desktop/sweep/report.h"
@@ -25,6 +26,8 @@ Json measured_json(const Measured& m) {
   json["time_ratio"] = interval_json(m.time_ratio);
   json["instructions_per_pixel"] = m.instructions_per_pixel;  // NaN and infinity become null
   json["bytes_per_frame"] = m.bytes_per_frame;
+  json["stored_bytes"] = m.stored_bytes;
+  json["bake_seconds"] = m.bake_seconds;
   json["flip_truth"] = m.truth.flip;
   json["flip_model"] = m.model.flip;
   json["flip_before"] = m.flip_before;
@@ -42,11 +45,22 @@ Json measured_json(const Measured& m) {
   return json;
 }
 
+Json prediction_json(const RadiosityPrediction& p) {
+  if (!p.why_not.empty()) return {{"why_not", p.why_not}};
+  return {{"bake_seconds", p.seconds},
+          {"stored_bytes", p.bytes},
+          {"ns_per_pixel", p.ns_per_pixel},
+          {"flip_truth", p.flip},
+          {"flip_truth_without", p.flip_without}};
+}
+
 void print_value(const Sweep& sweep, const KnobFigures& k, const Measured& m, bool in_bytes) {
   std::printf("    %-16s %9.2f ms  ×%-7.3g ꟻLIP %.4f", m.value.c_str(), ms_of(sweep, m.ns_per_pixel.value),
               m.time_ratio.value, flip_by(k, m));
   if (k.judge == Judge::model) std::printf("  RMSE %.5f", m.errors.rmse);
   if (in_bytes) std::printf("  %.0f bytes per frame", m.bytes_per_frame);
+  if (k.is_baked) std::printf("  %.2f MiB stored", m.stored_bytes / (1 << 20));
+  if (std::isfinite(m.bake_seconds)) std::printf(", baked in %.2g s", m.bake_seconds);
   std::printf("%s%s\n", m.is_default ? "  baseline" : "", m.pareto ? "  *" : "");
 }
 
@@ -55,7 +69,7 @@ void print_knob(const Sweep& sweep, const KnobFigures& k) {
   std::printf("  %s: %s; error against %s\n", k.name.c_str(), k.what.c_str(), text_of(k.judge));
   KnobEnds ends = ends_of(sweep, k.name);
   for (const Measured* m : values_of(sweep, k.name))
-    if (m == ends.worst || m == ends.standard || m == ends.best) {
+    if (m == ends.worst || m == ends.standard || m == ends.best || (k.is_baked && m->missing.empty())) {
       print_value(sweep, k, *m, is_paid_in_bytes(ends));
       if (!m->note.empty()) std::printf("      (%s)\n", m->note.c_str());
     }
@@ -102,6 +116,7 @@ Json sweep_json(const Sweep& sweep) {
           {"model", reference_json(sweep.model)},
           {"model_distance", {{"flip", sweep.model_distance}, {"rmse", sweep.model_rmse}}},
           {"quality", quality},
+          {"radiosity_prediction", prediction_json(sweep.radiosity)},
           {"notes", sweep.notes},
           {"knobs", knobs},
           {"measured", measured}};
@@ -119,6 +134,7 @@ void print_sweep(const Sweep& sweep) {
     std::printf("  --quality %-7s %9.2f ms  ꟻLIP %.4f  %s\n", c.level.c_str(), c.ms, c.flip, c.settings.c_str());
   for (const KnobFigures& k : sweep.knobs) print_knob(sweep, k);
   print_front(sweep);
+  std::printf("  %s\n", radiosity_text(sweep).c_str());
   for (const std::string& note : sweep.notes) std::printf("  %s\n", note.c_str());
 }
 

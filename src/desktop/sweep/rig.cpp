@@ -5,6 +5,7 @@
 
 #include "base/check.h"
 #include "base/limits.h"
+#include "desktop/sweep/bake_rig.h"
 #include "desktop/sweep/sweep.h"
 #include "effect/setting_list.h"
 #include "engine/frame.h"
@@ -58,33 +59,41 @@ Status load_cornell(std::uint32_t sphere_columns, Renderer* renderer, SceneStora
   return success();
 }
 
-Status open_with(const AccuracyOptions& options, const CommonOptions& common, std::uint32_t sphere_columns, Rig* rig) {
+Status open_with(const AccuracyOptions& options, const CommonOptions& common, const SceneChoice& choice, Rig* rig) {
+  const std::uint32_t sphere_columns = choice.sphere_columns;
   OpenHooks hooks;
   hooks.output_bytes = [](const Settings&) -> std::size_t { return 0; };
   if (sphere_columns != kCornellSphereColumns)
     hooks.load = [=](const std::string&, Renderer* renderer, SceneSource*, SceneStorage* storage) {
       return load_cornell(sphere_columns, renderer, storage);
     };
+  if (!is_as_opened(choice.bake))
+    hooks.load = [&](const std::string& name, Renderer* renderer, SceneSource* source, SceneStorage* storage) {
+      return load_as_baked(choice.bake, common.accel, name, renderer, source, storage, &rig->bake_seconds);
+    };
   hooks.loaded = [&](const SceneSource& source, Renderer* renderer) {
     rig->baseline.settings = renderer->settings;
     rig->scene_hash = hash_of(source, renderer->scene);
     if (renderer->view.animation != 0) rig->scene_hash += ", animation " + common.animation;
     ContentHash identity;
-    const bool has_own_look = common.background.empty() && common.environment.empty() &&
+    rig->has_own_look = common.background.empty() && common.environment.empty() &&
                               common.light == CommonOptions().light && renderer->view.animation == 0;
-    if (has_own_look && identify_scene(source, renderer, &identity).ok)
-      rig->front_path = front_path(common.scene, identity);
+    if (!rig->has_own_look || !identify_scene(source, renderer, &identity).ok) return success();
+    rig->front_path = front_path(common.scene, identity);
+    rig->prices_path =
+        front_path(common.scene, identity, machine_name(renderer->pace.device, renderer->settings.threads));
     return success();
   };
   hooks.plan = plan_sweeps;
   RETURN_IF_ERROR(open_scene(common, hooks, &rig->opened));
   RETURN_IF_ERROR(start_scene(&rig->opened, common));
   Renderer* renderer = &rig->opened.renderer;
+  rig->stored_bytes = static_cast<double>(stored_bytes_of(*renderer));
   RETURN_IF_ERROR(change_settings(renderer, rig->baseline.settings));
   RETURN_IF_ERROR(begin_frame(renderer, {options.seconds}));
-  ExposureChoice choice;
+  ExposureChoice exposure_choice;
   float factor;
-  RETURN_IF_ERROR(parse_exposure(common.exposure, &choice, &factor));
+  RETURN_IF_ERROR(parse_exposure(common.exposure, &exposure_choice, &factor));
   if (renderer->scene.info.auto_exposure == 0) return success();
   renderer->view.exposure = measure_exposure(renderer);
   return change_exposure(factor, &renderer->view.exposure);
@@ -98,7 +107,7 @@ std::uint32_t row_count(const Rig& rig) {
 
 }  // namespace
 
-Status open_rig(const AccuracyOptions& options, std::uint32_t sphere_columns, std::unique_ptr<Rig>* rig) {
+Status open_rig(const AccuracyOptions& options, const SceneChoice& choice, std::unique_ptr<Rig>* rig) {
   CommonOptions common = options.common;
   bool grows = common.memory.empty() && common.device.empty() && common.emulate.empty();
   std::size_t memory = kMemoryFirst;
@@ -107,7 +116,7 @@ Status open_rig(const AccuracyOptions& options, std::uint32_t sphere_columns, st
     *rig = std::make_unique<Rig>();
     (*rig)->baseline.output = find_output_format(options.output);
     (*rig)->baseline.sphere_columns = kCornellSphereColumns;
-    Status status = open_with(options, common, sphere_columns, rig->get());
+    Status status = open_with(options, common, choice, rig->get());
     std::size_t wanted = (*rig)->opened.source.bytes_wanted;
     if (status.ok || !grows || wanted <= memory) return status;
     memory = size_sum(wanted, wanted / 4);

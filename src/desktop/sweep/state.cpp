@@ -25,7 +25,9 @@ Json to_json(const Distance& d) { return {{"flip", number(d.flip)}, {"one", d.on
 Json to_json(const PointFigures& f) {
   Json json = {{"ns_per_pixel", f.ns_per_pixel},
                {"instructions_per_pixel", number(f.instructions_per_pixel)},
-               {"bytes_per_frame", number(f.bytes_per_frame)}};
+               {"bytes_per_frame", number(f.bytes_per_frame)},
+               {"stored_bytes", number(f.stored_bytes)},
+               {"bake_seconds", number(f.bake_seconds)}};
   if (f.has_errors) {
     const PictureErrors& e = f.errors;
     json["errors"] = {number(f.flip_before), number(e.rmse), number(e.rel_mse), number(e.p99),
@@ -48,6 +50,7 @@ PointFigures figures_from(const Json& json) {
   f.ns_per_pixel = json.at("ns_per_pixel").get<std::vector<double>>();
   f.instructions_per_pixel = number_of(json.at("instructions_per_pixel"));
   f.bytes_per_frame = number_of(json.at("bytes_per_frame"));
+  f.stored_bytes = number_of(json.at("stored_bytes")), f.bake_seconds = number_of(json.at("bake_seconds"));
   f.has_errors = json.contains("errors");
   if (!f.has_errors) return f;
   const Json& e = json.at("errors");
@@ -76,6 +79,9 @@ bool is_sane(const PointFigures& f) {
   if (!std::isnan(f.instructions_per_pixel) && !is_within(f.instructions_per_pixel, 0, kInstructionsPerPixelMax))
     return false;
   if (!std::isnan(f.bytes_per_frame) && !is_within(f.bytes_per_frame, 0, kBytesPerFrameMax)) return false;
+  constexpr double kStoredBytesMax = 1e12, kBakeSecondsMax = 1e9;
+  if (!std::isnan(f.stored_bytes) && !is_within(f.stored_bytes, 0, kStoredBytesMax)) return false;
+  if (!std::isnan(f.bake_seconds) && !is_within(f.bake_seconds, 0, kBakeSecondsMax)) return false;
   const PictureErrors& e = f.errors;  // of light between 0 and 1
   for (double flip : f.flip_as)
     if (f.has_errors && !is_within(flip, 0, 1)) return false;

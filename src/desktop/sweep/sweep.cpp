@@ -13,16 +13,16 @@
 #include "desktop/accuracy/display.h"
 #include "desktop/accuracy/findings.h"
 #include "desktop/sweep/instructions.h"
+#include "desktop/sweep/picture_errors.h"
+#include "desktop/sweep/radiosity_prediction.h"
 #include "desktop/sweep/references.h"
 #include "desktop/sweep/rigs.h"
 #include "effect/setting_list.h"
 #include "plan/quality_level.h"
 #include "platform/instructions.h"
 #include "session/interrupt.h"
+#include "session/note.h"
 #include "session/progress.h"
-#ifdef POCKETRAY_HAVE_NETWORK
-#include "desktop/sweep/network/sent_frames.h"
-#endif
 
 namespace pocketray {
 namespace {
@@ -36,7 +36,7 @@ struct SweepRun {
   Rigs rigs;
   SweepPlan plan;
   AccuracyState state;
-  ReferencePictures truth, model;
+  Judges judges;
 };
 
 Json settings_json(const Quality& quality) {
@@ -77,42 +77,9 @@ Json key_of(const SweepRun& run, const Rig& rig) {
        {"isa", isa_name(active_isa())},
        {"accel", rig.opened.renderer.accel.info->name},
        {"emulate", c.emulate},
+       {"bake-choices", o.bakes},
        {"configurations", crc32_z(0, reinterpret_cast<const Bytef*>(ids.data()), ids.size())}});
   return key;
-}
-
-// Returns the picture in the rig's renderer as the screen shows it. *bytes_per_frame, unless null, receives the bytes
-// of its rows, in a build that can send them. After an interrupt *levels is meaningless.
-Status find_levels(const SweepRun& run, Rig* rig, const Configuration& configuration, Levels* levels,
-                   double* bytes_per_frame) {
-  const Renderer& renderer = rig->opened.renderer;
-  *levels = displayed_levels(renderer.image.data, renderer.settings.width, renderer.settings.height,
-                             renderer.view.exposure, kOutputFormats[configuration.output]);
-#ifdef POCKETRAY_HAVE_NETWORK
-  if (!bytes_per_frame && !configuration.near_lossless) return success();
-  SentPicture sent;
-  RETURN_IF_ERROR(send_frames(rig, configuration, run.options.seconds, &sent));
-  CHECK(interrupted || configuration.near_lossless || sent.levels.rgb == levels->rgb);
-  *levels = std::move(sent.levels);
-  if (bytes_per_frame) *bytes_per_frame = sent.bytes_per_frame;
-#else
-  CHECK(!configuration.near_lossless);  // there is no such knob
-  (void)run, (void)bytes_per_frame;
-#endif
-  return success();
-}
-
-// *noise receives what the reference's noise adds to the mean ꟻLIP.
-Distance distance_of(const ReferencePictures& reference, const std::vector<float>& shown, std::uint32_t width,
-                     std::uint32_t height, double ppd, double* noise) {
-  const std::vector<float> against_one = flip_errors(reference.encoded_one, shown, width, height, ppd);
-  const std::vector<float> against_other = flip_errors(reference.encoded_other, shown, width, height, ppd);
-  const double against_mean = mean_of(flip_errors(reference.encoded, shown, width, height, ppd));
-  Distance d;
-  d.flip = without_noise(against_mean, mean_of(against_one), mean_of(against_other));
-  d.one = block_means(against_one, width, height), d.other = block_means(against_other, width, height);
-  *noise = against_mean - d.flip;
-  return d;
 }
 
 // The quality's options, except those at their defaults.
@@ -125,37 +92,6 @@ std::string options_of(const Quality& quality) {
     options += (options.empty() ? "--" : " --") + std::string(row.name) + " " + value;
   }
   return options;
-}
-
-// After an interrupt there are none.
-Status find_errors(const SweepRun& run, Rig* rig, const SweepPoint& point, PointFigures* f) {
-  const Renderer& renderer = rig->opened.renderer;
-  std::uint32_t width = renderer.settings.width, height = renderer.settings.height;
-  Levels levels;
-  bool counts_bytes = &point == &run.plan.points[0] || point.configuration.near_lossless;
-  RETURN_IF_ERROR(find_levels(run, rig, point.configuration, &levels, counts_bytes ? &f->bytes_per_frame : nullptr));
-  if (interrupted) return success();
-  std::vector<double> light = exposed_light(renderer.image.data, renderer.image.count, renderer.view.exposure);
-  CHECK_EQ(light.size(), run.model.mean.size());
-  const double ppd = run.options.pixels_per_degree;
-  const auto shown = encoded_levels(levels);
-  double noise = 0;
-  f->truth = distance_of(run.truth, shown, width, height, ppd, &noise);
-  for (int i = 0; i < kOutputFormatCount; ++i) {
-    double* flip = &f->flip_as[static_cast<std::size_t>(i)];
-    *flip = f->truth.flip;
-    if (i == point.configuration.output) continue;
-    const Levels as = displayed_levels(renderer.image.data, width, height, renderer.view.exposure, kOutputFormats[i]);
-    *flip = mean_of(flip_errors(run.truth.encoded, encoded_levels(as), width, height, ppd));
-    *flip = std::max(*flip - noise, 0.0);
-  }
-  f->model = distance_of(run.model, shown, width, height, ppd, &noise);
-  f->flip_before = mean_of(flip_errors(run.model.encoded, encoded_light(light), width, height, ppd));
-  f->errors = picture_errors(run.model.mean, light);
-  f->errors.rmse = unbiased_rmse(run.model.one, run.model.other, light);
-  f->errors.psnr = f->errors.rmse > 0 ? -20 * std::log10(f->errors.rmse) : std::numeric_limits<double>::infinity();
-  f->has_errors = true;
-  return success();
 }
 
 // Order of a round: points at random, the baseline several times.
@@ -182,14 +118,21 @@ Status measure_round(SweepRun* run, RoundProgress* progress, bool* whole) {
   for (std::size_t i : round_order(run->plan, run->state.rounds)) {
     const SweepPoint& point = run->plan.points[i];
     Rig* rig;
-    RETURN_IF_ERROR(rig_for(&run->rigs, point.configuration, &rig));
+    const Status opened = rig_for(&run->rigs, point.configuration, &rig);
+    *whole = !interrupted;  // which ends a solution of radiosity, too
+    if (!*whole) return success();
+    RETURN_IF_ERROR(opened);
     double ns_per_pixel = 0;
     RETURN_IF_ERROR(time_frame(rig, point.configuration, run->options.seconds, &ns_per_pixel));
     *whole = !interrupted;
     if (!*whole) return success();
     times[i].push_back(ns_per_pixel);
     PointFigures* f = &run->state.points[id_of(point)];
-    if (!f->has_errors) RETURN_IF_ERROR(find_errors(*run, rig, point, f));
+    const bool counts_bytes = i == 0 || point.configuration.near_lossless;
+    if (!f->has_errors)
+      RETURN_IF_ERROR(find_errors(run->options, run->judges, counts_bytes, point.configuration, rig, f));
+    if (i == 0 || !is_as_opened(point.configuration.bake)) f->stored_bytes = rig->stored_bytes;
+    if (std::isnan(f->bake_seconds)) f->bake_seconds = rig->bake_seconds;
     *whole = f->has_errors;
     if (!*whole) return success();
     if (run->state.counted.empty() && std::isnan(f->instructions_per_pixel))
@@ -250,14 +193,14 @@ Status add_strip(SweepRun* run, const SweptKnob& swept, Sweep* sweep, bool* whol
     *whole = !interrupted;
     if (!*whole) return success();
     StripRow row;
-    RETURN_IF_ERROR(find_levels(*run, rig, point.configuration, &row.picture, nullptr));
+    RETURN_IF_ERROR(find_levels(run->options, rig, point.configuration, &row.picture, nullptr));
     *whole = !interrupted;
     if (!*whole) return success();
     row.label = point.knob + " " + point.value;
     row.ms = sweep->measured[i].ns_per_pixel.value * 1e-6 * sweep->width * sweep->height;
     row.flip = distance_to(sweep->measured[i], judge_of(*swept.knob)).flip;
     if (is_paid_in_bytes(ends_of(*sweep, strip.knob))) row.bytes = sweep->measured[i].bytes_per_frame;
-    const ReferencePictures& judge = judge_of(*swept.knob) == Judge::truth ? run->truth : run->model;
+    const ReferencePictures& judge = judge_of(*swept.knob) == Judge::truth ? run->judges.truth : run->judges.model;
     row.flip_map = flip_errors(judge.encoded, encoded_levels(row.picture), sweep->width, sweep->height,
                                run->options.pixels_per_degree);
     strip.rows.push_back(std::move(row));
@@ -273,10 +216,10 @@ ReferenceFigures figures_of(const ReferencePictures& pictures) {
 Status render_references(SweepRun* run, Sweep* sweep, bool* whole) {
   Rig* rig;
   RETURN_IF_ERROR(reference_rig(&run->rigs, &rig));
-  const ReferencePictures &truth = run->truth, &model = run->model;
-  RETURN_IF_ERROR(render_reference(run->options, Transport::model, rig, &run->state, &run->model, whole));
+  const ReferencePictures &truth = run->judges.truth, &model = run->judges.model;
+  RETURN_IF_ERROR(render_reference(run->options, Transport::model, rig, &run->state, &run->judges.model, whole));
   if (!*whole) return success();
-  RETURN_IF_ERROR(render_reference(run->options, Transport::physical, rig, &run->state, &run->truth, whole));
+  RETURN_IF_ERROR(render_reference(run->options, Transport::physical, rig, &run->state, &run->judges.truth, whole));
   if (!*whole) return success();
   sweep->truth = figures_of(truth), sweep->model = figures_of(model);
   sweep->reference_picture = model.levels, sweep->truth_picture = truth.levels;
@@ -286,7 +229,7 @@ Status render_references(SweepRun* run, Sweep* sweep, bool* whole) {
   std::vector<double> of_one = truth.one, of_other = truth.other, none(of_one.size(), 0.0);
   for (std::size_t i = 0; i < none.size(); ++i) of_one[i] -= model.one[i], of_other[i] -= model.other[i];
   sweep->model_rmse = unbiased_rmse(of_one, of_other, none);
-  run->rigs.by_columns.erase(kReferenceColumns);
+  close_rig(&run->rigs, rig);
   return success();
 }
 
@@ -312,7 +255,7 @@ Status add_quality(SweepRun* run, const Front& measured, Sweep* sweep, bool* who
                           candidate.flip,
                           {},
                           point_of_front(run->plan, *sweep, candidate)};
-    RETURN_IF_ERROR(find_levels(*run, rig, configuration, &level.picture, nullptr));
+    RETURN_IF_ERROR(find_levels(run->options, rig, configuration, &level.picture, nullptr));
     sweep->quality.push_back(level);
   }
   return success();
@@ -361,14 +304,15 @@ Status count_otherwise(SweepRun* run, const Rig& rig, bool by_cpu, Sweep* sweep,
 
 Status measure_sweep(const AccuracyOptions& options, Sweep* sweep, bool* whole, SweptFront* front) {
   CHECK(sweep != nullptr && whole != nullptr);
-  SweepRun run = {options, {options, {}}, {}, {}, {}, {}};
+  SweepRun run = {options, {options, {}, {}}, {}, {}, {}};
   *whole = true;
   RETURN_IF_ERROR(check_options(options));
   bool counts = platform::start_instruction_count();  // including later threads
   RETURN_IF_ERROR(plan_rigs(&run.rigs, &run.plan));
-  const Rig& rig = *run.rigs.by_columns[kCornellSphereColumns];
+  const Rig& rig = *first_rig(run.rigs);
   print_notes(rig.opened);
   describe(run, rig, sweep);
+  if (options.bakes) print_note(bake_note(run.plan, rig.opened.renderer.scene));
   RETURN_IF_ERROR(open_state(options.folder, key_of(run, rig), options.restart, &run.state));
   RETURN_IF_ERROR(check_state(run));
   RETURN_IF_ERROR(render_references(&run, sweep, whole));
@@ -382,7 +326,9 @@ Status measure_sweep(const AccuracyOptions& options, Sweep* sweep, bool* whole, 
   sweep->rounds = run.state.rounds;
   sum_up(run.plan, figures, sweep);
   const Front measured = front_of_sweep(run.plan, *sweep);
-  if (front) *front = {measured, rig.front_path};
+  if (front) *front = {measured, rig.front_path, rig.prices_path};
+  RETURN_IF_ERROR(predict_radiosity(options, run.judges, &run.rigs, sweep, whole));
+  if (!*whole) return success();
   RETURN_IF_ERROR(add_quality(&run, measured, sweep, whole));
   if (!*whole) return success();
   for (const SweptKnob& swept : run.plan.knobs) {

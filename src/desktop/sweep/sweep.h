@@ -21,6 +21,7 @@ struct AccuracyOptions {
   std::uint32_t rounds = 15;
   double pixels_per_degree = kHandheldPixelsPerDegree, seconds = 0, price_limit = 16;
   bool restart = false;
+  bool bakes = false;  // also vary what `bake` stores
   bool starts_valgrind =
       false;                 // if the CPU counts no instructions; only in a program started as `pocketray accuracy …`
   double save_seconds = 60;  // between saves of a running reference
@@ -32,17 +33,29 @@ struct AccuracyOptions {
 // A scene opened for all configurations that share its geometry.
 struct Rig {
   OpenScene opened;
-  Configuration baseline;             // as set by the options
-  std::string scene_hash;             // of its content
-  std::string front_path;             // in the cache; empty: not identified, or its look is overridden
-  std::vector<std::uint32_t> packed;  // pixels of the last frame
+  Configuration baseline;  // as set by the options
+  std::string scene_hash;  // of its content
+  // In the cache, of the front and of its prices on this machine; empty: not identified, or its look is overridden.
+  std::string front_path, prices_path;
+  bool has_own_look = false;  // neither light nor surroundings are overridden
+  double bake_seconds = kNotMeasured, stored_bytes = 0;  // bake_seconds: of scenes that were baked for the sweep
+  std::vector<std::uint32_t> packed;                     // pixels of the last frame
   std::vector<std::uint8_t> reference_memory;
   Reference reference;            // for the posed frame; made on demand
   std::uint32_t part_pixels = 0;  // frames are parts of about this many pixels; 0: the whole picture
 };
 
-// Opens the scene, with `sphere_columns` columns in cornell's sphere, for every configuration of the knobs.
-Status open_rig(const AccuracyOptions& options, std::uint32_t sphere_columns, std::unique_ptr<Rig>* rig);
+// What scenes can differ in, other than settings.
+struct SceneChoice {
+  std::uint32_t sphere_columns = kCornellSphereColumns;  // of cornell's sphere
+  BakeChoices bake;
+};
+
+// Opens the scene for every configuration of the knobs.
+Status open_rig(const AccuracyOptions& options, const SceneChoice& choice, std::unique_ptr<Rig>* rig);
+inline Status open_rig(const AccuracyOptions& options, std::uint32_t sphere_columns, std::unique_ptr<Rig>* rig) {
+  return open_rig(options, SceneChoice{sphere_columns, {}}, rig);
+}
 
 // Makes rig->reference from the prepared frame, unless already made.
 void make_rig_reference(Rig* rig);

@@ -191,22 +191,21 @@ bool is_effect_wanted(Client* client) {
 
 std::size_t light_need(const Settings& settings, const LightOptions& o) {
   if (o.split == SplitKind::rows) return 0;
-  const std::size_t lights = light_count(light_grid(settings, o.pitch));
+  const std::size_t lights = light_count(light_grid(settings, kLightPitch));
   return arena_need<Hit>(first_hit_count(settings)) +
          2 * (arena_need<MappedSurface>(lights) + arena_need<Vec3>(lights));
 }
 
 std::size_t light_message_bytes_max(const Settings& settings, const LightOptions& o) {
   if (o.split == SplitKind::rows) return 0;
-  return light_map_prefix_bytes() + light_bytes_max(light_count(light_grid(settings, o.pitch)));
+  return light_map_prefix_bytes() + light_bytes_max(light_count(light_grid(settings, kLightPitch)));
 }
 
 void make_light(const LightOptions& o, const Settings& settings, Arena* arena, ClientLight* light) {
   *light = ClientLight();
   if (o.split == SplitKind::rows) return;
-  CHECK(o.pitch >= kLightPitchMin && o.pitch <= kLightPitchMax);
   CHECK_GE(o.every, 1u);
-  light->grid = light_grid(settings, o.pitch);
+  light->grid = light_grid(settings, kLightPitch);
   light->first_hits = arena_array<Hit>(arena, static_cast<std::uint32_t>(first_hit_count(settings)));
   for (int i = 0; i < 2; ++i) {
     light->surfaces[i] = arena_array<MappedSurface>(arena, light_count(light->grid));

@@ -82,15 +82,17 @@ Status check(const ServersOptions& o) {
     return failure("--verify checks pixels of render servers: add --server");
   if (o.addresses.empty() && o.near_lossless)
     return failure("--near-lossless applies to pixels of render servers: add --server");
-  if (o.split == "rows" && (o.light_pitch != 0 || o.light_every != 1))
-    return failure("--light-pitch and --light-every apply to --split effect and auto");
+  if (o.split == "rows" && o.light_every != 1) return failure("--light-every applies to --split effect and auto");
   if (o.split != "rows" && o.addresses.empty())
     return failure("--split shares frames with render servers: add --server");
   if (o.split != "rows" && o.device_share != kBestShare)
     return failure("--share and --split %s both set what the device renders: drop one of them", o.split.c_str());
-  bool any = o.price > 0 || o.energy_pixel > 0 || o.energy_byte > 0 || o.cost_weight_ms > 0 || o.cost_cap > 0;
-  if (o.addresses.empty() && (any || o.device_share != kBestShare))
-    return failure("shares, prices and energies apply to render servers: add --server");
+  const std::pair<const char*, bool> given[] = {
+      {"--share", o.device_share != kBestShare}, {"--price", o.price > 0},
+      {"--energy-pixel", o.energy_pixel > 0},    {"--energy-byte", o.energy_byte > 0},
+      {"--cost-weight", o.cost_weight_ms > 0},   {"--cost-cap", o.cost_cap > 0}};
+  for (const auto& [option, is_given] : given)
+    if (o.addresses.empty() && is_given) return failure("%s applies to render servers: add --server", option);
   if (o.cost_weight_ms > 0 && o.cost_cap > 0)
     return failure("--cost-weight and --cost-cap exclude each other: use one of them");
   return success();
@@ -108,7 +110,6 @@ LightOptions light_options(const ConnectedServers& s) {
   const ServersOptions& o = s.options;
   if (!s.is_thin)
     light.split = o.split == "effect" ? SplitKind::effect : o.split == "auto" ? SplitKind::automatic : SplitKind::rows;
-  if (o.light_pitch != 0) light.pitch = o.light_pitch;
   light.every = o.light_every;
   if (!o.coarse_first) light.wait_ns = kLightWaitNs;
   return light;
