@@ -209,6 +209,38 @@ bool shows_occlusion(const Scene& scene, const MaterialMaps& maps) {
   return !every_texel(scene, maps.occlusion, [](const Texel& t) { return t.r == 255; });
 }
 
+bool shows_coat(const Scene& scene, const ClearCoat& coat) {
+  if (!(coat.strength > 0)) return false;
+  return coat.strength_texture.texture == kNone ||
+         !every_texel(scene, coat.strength_texture, [](const Texel& t) { return t.r == 0; });
+}
+
+bool shows_grain(const Scene& scene, const Grain& grain) {
+  if (grain.direction.x == 0 && grain.direction.y == 0) return false;
+  return grain.texture.texture == kNone || !every_texel(scene, grain.texture, [](const Texel& t) { return t.b == 0; });
+}
+
+bool shows_vertex_colors(const Scene& scene) {
+  if (scene.colors.empty()) return false;
+  CHECK_EQ(scene.colors.count, scene.positions.count);
+  for (const Triangle& t : scene.triangles)
+    for (std::uint32_t v : t.vertices()) {
+      const Rgba16& c = scene.colors[v];
+      if (c.r != 65535 || c.g != 65535 || c.b != 65535) return true;
+    }
+  return false;
+}
+
+bool passes_unchanged(const Scene& scene, std::uint32_t material) {
+  CHECK_LT(material, scene.materials.count);
+  const Material& m = scene.materials[material];
+  if (m.transmission != Vec3{1, 1, 1} || m.ior != 1 || m.alpha_mode != AlphaMode::opaque) return false;
+  if (!m.thin && !is_zero(m.absorption)) return false;
+  if (!is_zero(m.diffuse) || !is_zero(m.specular) || !is_zero(m.mirror) || shows_emission(scene, material))
+    return false;
+  return scene.clear_coats.empty() || !shows_coat(scene, scene.clear_coats[material]);
+}
+
 bool shows_vertex_normals(const Scene& scene) {
   if (scene.normals.empty()) return false;
   CHECK_EQ(scene.normals.count, scene.positions.count);

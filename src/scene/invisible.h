@@ -1,5 +1,5 @@
-// Contents of a scene that no picture shows: black emission, alpha that hides nothing, maps of one value, normals of
-// flat faces, animations that hold still. Without them, every pixel keeps its bits.
+// Contents of a scene that no picture shows: black emission, alpha that hides nothing, maps of one value, white vertex
+// colours, normals of flat faces, animations that hold still. Without them, every pixel keeps its bits.
 #pragma once
 #include "scene/scene.h"
 
@@ -14,10 +14,18 @@ bool shows_emission(const Scene& scene, std::uint32_t material);
 bool shows_holes(const Scene& scene, std::uint32_t material);
 // Returns whether a blended material shows what is behind it: its alpha is below 1 somewhere.
 bool shows_background(const Scene& scene, std::uint32_t material);
+// Returns whether a clear coat is above 0 anywhere, and whether a grain is: their textures may be black.
+bool shows_coat(const Scene& scene, const ClearCoat& coat);
+bool shows_grain(const Scene& scene, const Grain& grain);
 // Returns whether a normal texture leans normals anywhere.
 bool shows_normal_map(const Scene& scene, const TextureUse& normal, float scale);
 // Returns whether an occlusion texture takes light away anywhere.
 bool shows_occlusion(const Scene& scene, const MaterialMaps& maps);
+
+// Returns whether a colour at a vertex is not white; their alpha is material's, as above.
+bool shows_vertex_colors(const Scene& scene);
+// Returns whether light passes the material as if it were not there: neither bent, reflected nor absorbed.
+bool passes_unchanged(const Scene& scene, std::uint32_t material);
 
 // Returns whether vertex normals can differ from those of the triangles: not if they are zero, nor along an axis that a
 // resting triangle is perpendicular to, where interpolation is exact.

@@ -280,7 +280,7 @@ enum class Invisible : std::uint32_t {
   mask_without_holes,  // materials whose alpha is never below the cut-off
   flat_normal_map,     // materials; so are the following three
   white_occlusion,
-  even_metallic_roughness,  // by a texture of one value
+  even_metallic_roughness,  // by textures of one value, also of reflectance
   even_color,
   flat_vertex_normals,  // vertices
   still_animation,
@@ -290,8 +290,12 @@ enum class Invisible : std::uint32_t {
   dark_directional,
   distant_point,
   distant_spot,
+  clear_glass,          // materials that light passes as if they were not there
+  white_vertex_colors,  // vertices
+  black_coat,           // materials; so is the next
+  black_grain,
 };
-constexpr int kInvisibleCount = 14;
+constexpr int kInvisibleCount = 18;
 inline Invisible dark_light(LightKind kind) { return static_cast<Invisible>(9 + static_cast<int>(kind)); }
 inline Invisible distant_light(LightKind kind) { return static_cast<Invisible>(12 + static_cast<int>(kind)); }
 static_assert(static_cast<int>(Invisible::dark_point) == 9 && static_cast<int>(Invisible::distant_point) == 12,

@@ -11,14 +11,6 @@ float component(float texel) {
   return x > -1 ? x : -1;
 }
 
-// Grain direction, turned and weakened by its texture.
-Vec2 turned_grain(const Vec2& d, const Vec3& numbers) {
-  const float x = numbers.x * (2 / 255.0f) - 1, y = numbers.y * (2 / 255.0f) - 1, square = x * x + y * y;
-  if (!(square > 0)) return {0, 0};
-  const float scale = numbers.z * (1 / 255.0f) / std::sqrt(square);
-  return {(d.x * x - d.y * y) * scale, (d.x * y + d.y * x) * scale};
-}
-
 }  // namespace
 
 bool tangent_frame(const FrameData& frame, const Surface& s, const Vec3& n, Vec3* tangent, Vec3* bitangent) {
@@ -69,6 +61,14 @@ Vec3 mapped_normal(const FrameData& frame, float scale, const Vec3& texel, const
     mapped = normalize(mapped - way * dot(mapped, way));
   }
   return is_zero(mapped) ? s.normal : mapped;
+}
+
+Vec2 turned_grain(const Vec2& direction, const Vec3& numbers) {
+  const Vec2& d = direction;
+  const float x = numbers.x * (2 / 255.0f) - 1, y = numbers.y * (2 / 255.0f) - 1, square = x * x + y * y;
+  if (!(square > 0)) return {0, 0};
+  const float scale = numbers.z * (1 / 255.0f) / std::sqrt(square);
+  return {(d.x * x - d.y * y) * scale, (d.x * y + d.y * x) * scale};
 }
 
 Vec3 surface_grain(const FrameData& frame, const Grain& grain, const Surface& s) {

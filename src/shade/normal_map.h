@@ -21,6 +21,8 @@ bool tangent_frame(const FrameData& frame, const Surface& s, const Vec3& n, Vec3
 //   - Where there is no frame, the normal is n.
 Vec3 mapped_normal(const FrameData& frame, float scale, const Vec3& texel, const Ray& ray, const Surface& s);
 
+// Direction of a grain, turned and weakened by its texture's numbers.
+Vec2 turned_grain(const Vec2& direction, const Vec3& numbers);
 // LobeFrame::grain of a surface whose normal is final (Effect::anisotropy).
 Vec3 surface_grain(const FrameData& frame, const Grain& grain, const Surface& s);
 

@@ -17,12 +17,13 @@ Vec3 smooth_normal(const FrameData& frame, const Triangle& t, float w, float u, 
   return dot(n, geometric) < 0 ? -n : n;
 }
 
-Vec3 vertex_color(const Scene& scene, const Triangle& t, float w, float u, float v) {
+Vec3 vertex_color(const Scene& scene, const Triangle& t, float u, float v) {
   auto at = [&](int i) {
     const Rgba16& c = scene.colors[t.vertex(i)];
     return Vec3{static_cast<float>(c.r), static_cast<float>(c.g), static_cast<float>(c.b)} * (1.0f / 65535.0f);
   };
-  return at(0) * w + at(1) * u + at(2) * v;
+  const Vec3 first = at(0);
+  return first + (at(1) - first) * u + (at(2) - first) * v;  // exact where equal
 }
 
 // Moves a point that lies on an edge of its triangle, within rounding, slightly towards the middle. From a point beside
@@ -132,7 +133,7 @@ void evaluate_surface(const FrameData& frame, const Ray& ray, const Hit& hit, Su
   if constexpr (has(mask, Effect::vertex_color)) {
     if (scene.colors.count) {
       effect_entered<Effect::vertex_color>();
-      Vec3 color = vertex_color(scene, t, w, u, v);
+      Vec3 color = vertex_color(scene, t, u, v);
       s->diffuse *= color;
       s->tint = s->is_tinted ? s->tint * color : color;
       s->is_tinted = true;

@@ -5,6 +5,7 @@
 #include <functional>
 #include <string>
 
+#include "brdf/brdf_list.h"
 #include "plan/plan_effects.h"
 #include "support/generated_scene.h"
 #include "support/hard_case.h"
@@ -15,7 +16,8 @@ namespace {
 
 using Texels = std::vector<std::array<int, 4>>;
 
-constexpr std::array<int, 4> kBlack = {{0, 0, 0, 255}}, kWhite = {{255, 255, 255, 255}}, kFlat = {{128, 128, 255, 255}};
+constexpr std::array<int, 4> kBlack = {{0, 0, 0, 255}}, kWhite = {{255, 255, 255, 255}}, kFlat = {{128, 128, 255, 255}},
+                             kGreenBlue = {{0, 255, 255, 255}}, kRedGreen = {{255, 255, 0, 255}};
 
 // Four texels, of which the last may differ.
 std::uint32_t texture_of(GeneratedScene* s, const std::array<int, 4>& all, const std::array<int, 4>& last) {
@@ -125,6 +127,25 @@ const Case kCases[] = {
      [](GeneratedScene* s, bool visible) {
        s->material_maps[1].occlusion.texture = texture_of(s, kWhite, {{visible ? 254 : 255, 0, 0, 255}});
      }},
+    {"white vertices", Effect::vertex_color, "no vertex has a colour (28 white)",
+     [](GeneratedScene* s, bool visible) {
+       s->with_colors = true;
+       s->colors.assign(s->positions.size(), {65535, 65535, 65535, 0});
+       s->colors[4].g = visible ? 65534 : 65535;
+     }},
+    {"coat under black", Effect::clear_coat, "none of 2 materials have a clear coat (1 with a black texture)",
+     [](GeneratedScene* s, bool visible) {
+       s->clear_coats.resize(2);
+       s->clear_coats[1].strength = 1, s->clear_coats[1].roughness = s->clear_coats[1].roughness_low = 0.4f;
+       s->clear_coats[1].strength_texture.texture = texture_of(s, kGreenBlue, {{visible, 255, 255, 255}});
+     }},
+    {"grain under black", Effect::anisotropy, "none of 2 materials have a grain (1 with a black texture)",
+     [](GeneratedScene* s, bool visible) {
+       s->materials[1].brdf = kGgx, s->materials[1].specular = {0.5f, 0.5f, 0.5f}, s->materials[1].roughness = 0.2f;
+       s->grains.resize(2);
+       s->grains[1].direction = {1, 0};
+       s->grains[1].texture.texture = texture_of(s, kRedGreen, {{255, 255, visible, 255}});
+     }},
     {"zero normals", Effect::smooth_normal, "no vertex has a normal of its own",
      [](GeneratedScene* s, bool visible) {
        s->with_normals = true;
@@ -198,6 +219,12 @@ bool is_on_by_flags(const Asked& asked) {
       return any_map([](const MaterialMaps& m) { return m.occlusion.texture != kNone; });
     case Effect::smooth_normal:
       return s.with_normals;
+    case Effect::vertex_color:
+      return s.with_colors;
+    case Effect::clear_coat:
+      return std::any_of(s.clear_coats.begin(), s.clear_coats.end(), [](const ClearCoat& c) { return c.strength > 0; });
+    case Effect::anisotropy:
+      return std::any_of(s.grains.begin(), s.grains.end(), [](const Grain& g) { return g.direction.x != 0; });
     case Effect::spot_light:
       return std::any_of(s.lights.begin(), s.lights.end(), [](const Light& l) { return l.kind == LightKind::spot; });
     case Effect::animation:

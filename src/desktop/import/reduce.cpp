@@ -1,6 +1,7 @@
 #include "desktop/import/reduce.h"
 
 #include <algorithm>
+#include <initializer_list>
 #include <map>
 
 #include "base/check.h"
@@ -9,9 +10,14 @@
 #include "scene/invisible.h"
 #include "scene/metallic_roughness.h"
 #include "scene/texture_levels.h"
+#include "shade/normal_map.h"
 
 namespace pocketray {
 namespace {
+
+// Angle within which a normal from a file is that of its face. Chosen: normals in floats, turned by a node, err by
+// less, and radiance changes by a millionth of the light.
+constexpr double kNormalRounding = 0x1p-20;
 
 // Calls visit(use) for every use of a texture.
 template <class Visit>
@@ -34,11 +40,18 @@ class Reducer {
  private:
   void note(Invisible what, std::uint32_t count = 1) { counts_[static_cast<int>(what)] += count; }
   bool is_animated(std::uint32_t material, ChannelPath path) const;
+  bool survive_filters(const TextureUse& use, std::initializer_list<float> values) const;
   void reduce_emission(std::uint32_t index);
   void reduce_alpha(std::uint32_t index);
   void reduce_maps(std::uint32_t index);
+  void fold_reflectance(std::uint32_t index);
   void fold_metallic_roughness(std::uint32_t index);
-  void fold_color(std::uint32_t index);
+  bool fold_color(std::uint32_t index);
+  bool fold_emission(std::uint32_t index);
+  void fold_coat(std::uint32_t index);
+  void fold_grain(std::uint32_t index);
+  void reduce_colors();
+  void reduce_glass();
   void reduce_animations();
   void reduce_lights();
   void reduce_normals();
@@ -84,15 +97,40 @@ void Reducer::reduce_maps(std::uint32_t index) {
     coat.normal = TextureUse(), note(Invisible::flat_normal_map);
 }
 
+// Returns whether lookups of a texture of these values return them: filters of levels average 3 or 4 lookups.
+bool Reducer::survive_filters(const TextureUse& use, std::initializer_list<float> values) const {
+  if (out_.textures[use.texture].level_count == 1) return true;
+  return std::all_of(values.begin(), values.end(),
+                     [](float x) { return (x + x + x) * (1 / 3.0f) == x && (x + x + x + x) * (1 / 4.0f) == x; });
+}
+
+// Multiplies the model's reflectance as apply_specular() of shade/material_maps.cpp does at every point.
+void Reducer::fold_reflectance(std::uint32_t index) {
+  MaterialMaps& maps = out_.material_maps[index];
+  std::uint8_t value[4];
+  if (maps.specular.texture != kNone) {
+    if (!has_one_value(scene_, maps.specular, value)) return;
+    const float share = static_cast<float>(value[3]) * (1.0f / 255.0f);
+    if (!survive_filters(maps.specular, {share})) return;
+    maps.model.dielectric = maps.model.dielectric * share, maps.model.grazing *= share;
+    maps.specular = TextureUse();
+  }
+  if (maps.specular_color.texture == kNone || !has_one_value(scene_, maps.specular_color, value)) return;
+  const Vec3 color = {srgb_to_linear(value[0]), srgb_to_linear(value[1]), srgb_to_linear(value[2])};
+  if (!survive_filters(maps.specular_color, {color.x, color.y, color.z})) return;
+  maps.model.dielectric *= color;
+  maps.specular_color = TextureUse();
+}
+
 // Sets the lobes as apply_metallic_roughness() and lobes_at() of shade/material_maps.cpp do at every point.
 void Reducer::fold_metallic_roughness(std::uint32_t index) {
   if (index >= out_.material_maps.size()) return;
   MaterialMaps& maps = out_.material_maps[index];
-  std::uint8_t value[4];
-  if (maps.metallic_roughness.texture == kNone || maps.specular.texture != kNone ||
-      maps.specular_color.texture != kNone || !has_one_value(scene_, maps.metallic_roughness, value))
-    return;
-  if (is_animated(index, ChannelPath::material_diffuse)) return;
+  if (!has_lobe_map(maps) || is_animated(index, ChannelPath::material_diffuse)) return;
+  fold_reflectance(index);
+  std::uint8_t value[4] = {255, 255, 255, 255};
+  if (maps.specular.texture != kNone || maps.specular_color.texture != kNone) return;
+  if (maps.metallic_roughness.texture != kNone && !has_one_value(scene_, maps.metallic_roughness, value)) return;
   auto within = [](float x, float low, float high) { return x > low ? (x < high ? x : high) : low; };
   const float metallic =
       within(maps.metallic * (static_cast<float>(value[2]) / 255), maps.metallic_low, maps.metallic_high);
@@ -106,32 +144,98 @@ void Reducer::fold_metallic_roughness(std::uint32_t index) {
   note(Invisible::even_metallic_roughness);
 }
 
-// Returns whether filters that average 3 or 4 lookups return the value itself.
-bool survives_averaging(float x) { return (x + x + x) * (1 / 3.0f) == x && (x + x + x + x) * (1 / 4.0f) == x; }
-
-void Reducer::fold_color(std::uint32_t index) {
+bool Reducer::fold_color(std::uint32_t index) {
   Material& m = out_.materials[index];
   std::uint8_t value[4];
-  if (m.diffuse_texture.texture == kNone || !has_one_value(scene_, m.diffuse_texture, value)) return;
+  if (m.diffuse_texture.texture == kNone || !has_one_value(scene_, m.diffuse_texture, value)) return false;
   const Vec3 tint = {srgb_to_linear(value[0]), srgb_to_linear(value[1]), srgb_to_linear(value[2])};
   const float alpha = static_cast<float>(value[3]) * (1.0f / 255.0f);
   const bool is_white = tint == Vec3{1, 1, 1};
   if (!is_white) {
     const bool has_lobes_from_maps = index < out_.material_maps.size() && has_lobe_map(out_.material_maps[index]);
     const bool tints_metal = !is_zero(m.specular_tinted) || !is_zero(m.mirror_tinted);
-    if (has_lobes_from_maps || (tints_metal && !out_.colors.empty())) return;
-    if (is_animated(index, ChannelPath::material_diffuse)) return;
+    if (has_lobes_from_maps || (tints_metal && !out_.colors.empty())) return false;
+    if (is_animated(index, ChannelPath::material_diffuse)) return false;
   }
-  const bool has_levels = out_.textures[m.diffuse_texture.texture].level_count > 1;
-  for (float x : {tint.x, tint.y, tint.z, alpha})
-    if (has_levels && !survives_averaging(x)) return;
+  if (!survive_filters(m.diffuse_texture, {tint.x, tint.y, tint.z, alpha})) return false;
   const Vec3 missing = Vec3{1, 1, 1} - tint;
   m.diffuse *= tint, m.opacity *= alpha;
   m.specular = m.specular - m.specular_tinted * missing, m.mirror = m.mirror - m.mirror_tinted * missing;
   m.specular_tinted = min(m.specular_tinted * tint, m.specular),
   m.mirror_tinted = min(m.mirror_tinted * tint, m.mirror);
   m.diffuse_texture = TextureUse();
-  note(Invisible::even_color);
+  return true;
+}
+
+bool Reducer::fold_emission(std::uint32_t index) {
+  Material& m = out_.materials[index];
+  std::uint8_t value[4];
+  if (m.emission_texture.texture == kNone || !has_one_value(scene_, m.emission_texture, value)) return false;
+  if (is_animated(index, ChannelPath::material_emission)) return false;
+  const Vec3 color = {srgb_to_linear(value[0]), srgb_to_linear(value[1]), srgb_to_linear(value[2])};
+  if (!survive_filters(m.emission_texture, {color.x, color.y, color.z})) return false;
+  m.emission *= color, m.emission_texture = TextureUse();
+  return true;
+}
+
+// Sets strength and roughness as find_coat() of shade/clear_coat.cpp does at every point.
+void Reducer::fold_coat(std::uint32_t index) {
+  if (index >= out_.clear_coats.size() || !(out_.clear_coats[index].strength > 0)) return;
+  ClearCoat& coat = out_.clear_coats[index];
+  if (!shows_coat(scene_, coat)) {
+    coat = ClearCoat(), note(Invisible::black_coat);
+    return;
+  }
+  std::uint8_t value[4];
+  if (coat.strength_texture.texture != kNone && has_one_value(scene_, coat.strength_texture, value)) {
+    coat.strength *= static_cast<float>(value[0]) / 255;
+    coat.strength_texture = TextureUse();
+  }
+  if (coat.roughness_texture.texture == kNone || !has_one_value(scene_, coat.roughness_texture, value)) return;
+  coat.roughness = std::max(coat.roughness * (static_cast<float>(value[1]) / 255), coat.roughness_low);
+  coat.roughness_low = coat.roughness, coat.roughness_texture = TextureUse();
+}
+
+void Reducer::fold_grain(std::uint32_t index) {
+  if (index >= out_.grains.size() || !has_strength(out_.grains[index])) return;
+  Grain& grain = out_.grains[index];
+  if (!shows_grain(scene_, grain)) {
+    grain = Grain(), note(Invisible::black_grain);
+    return;
+  }
+  std::uint8_t value[4];
+  if (grain.texture.texture == kNone || !has_one_value(scene_, grain.texture, value)) return;
+  const Vec3 numbers = {static_cast<float>(value[0]), static_cast<float>(value[1]), static_cast<float>(value[2])};
+  grain.direction = turned_grain(grain.direction, numbers), grain.texture = TextureUse();
+}
+
+void Reducer::reduce_colors() {
+  if (out_.colors.empty() || shows_vertex_colors(scene_)) return;
+  for (const Triangle& t : out_.triangles)
+    for (std::uint32_t v : t.vertices())
+      if (out_.materials[t.material()].alpha_mode != AlphaMode::opaque && out_.colors[v].a != 65535) return;
+  note(Invisible::white_vertex_colors, static_cast<std::uint32_t>(out_.colors.size()));
+  out_.colors.clear(), scene_ = view_of(out_);
+}
+
+// Leaves out triangles that light passes, unless a body of glass may contain them or all of the scene would vanish.
+void Reducer::reduce_glass() {
+  std::vector<bool> is_clear(out_.materials.size());
+  std::uint32_t count = 0;
+  for (std::uint32_t i = 0; i < is_clear.size(); ++i) {
+    is_clear[i] = passes_unchanged(scene_, i) && !is_animated(i, ChannelPath::material_diffuse) &&
+                  !is_animated(i, ChannelPath::material_emission);
+    if (!is_clear[i] && !is_zero(out_.materials[i].transmission)) return;
+  }
+  std::vector<bool> is_used(out_.materials.size());
+  for (const Triangle& t : out_.triangles) is_used[t.material()] = true;
+  std::vector<Triangle> kept;
+  for (const Triangle& t : out_.triangles)
+    if (!is_clear[t.material()]) kept.push_back(t);
+  for (std::uint32_t i = 0; i < is_clear.size(); ++i) count += is_clear[i] && is_used[i];
+  if (count == 0 || kept.empty()) return;
+  note(Invisible::clear_glass, count);
+  out_.triangles.swap(kept), scene_ = view_of(out_);
 }
 
 // Places what nodes hold as they do at time 0.
@@ -178,8 +282,29 @@ void Reducer::reduce_lights() {
   out_.lights.swap(kept);
 }
 
+// Returns whether resting triangles have their own normals at their vertices, to the rounding of those in files.
+bool has_normals_of_faces(const Scene& scene) {
+  if (scene.moving_meshes.count > 0) return false;
+  for (const Triangle& t : scene.triangles) {
+    const Vec3d a = to_double(scene.positions[t.vertex(0)]);
+    const Vec3d across =
+        cross(to_double(scene.positions[t.vertex(1)]) - a, to_double(scene.positions[t.vertex(2)]) - a);
+    if (is_zero(across)) continue;  // cannot be hit
+    const Vec3d face = normalize(across);
+    bool any_above = false, any_below = false;
+    for (std::uint32_t v : t.vertices()) {
+      const Vec3d normal = normalize(to_double(scene.normals[v]));
+      const double height = dot(normal, face);
+      any_above |= height > 0, any_below |= height < 0;
+      if (!(length(cross(normal, face)) <= kNormalRounding)) return false;
+    }
+    if (any_above && any_below) return false;  // the shading normal turns to the face's side only as a whole
+  }
+  return true;
+}
+
 void Reducer::reduce_normals() {
-  if (out_.normals.empty() || shows_vertex_normals(scene_)) return;
+  if (out_.normals.empty() || (shows_vertex_normals(scene_) && !has_normals_of_faces(scene_))) return;
   const auto given = std::count_if(out_.normals.begin(), out_.normals.end(), [](const Vec3& n) { return !is_zero(n); });
   if (given > 0) note(Invisible::flat_vertex_normals, static_cast<std::uint32_t>(given));
   out_.normals.clear(), out_.rest_normals.clear(), out_.morph_normals.clear();
@@ -215,14 +340,18 @@ void Reducer::drop_unused_textures() {
 
 void Reducer::reduce_all() {
   const std::size_t texture_count = out_.textures.size();
+  for (std::uint32_t i = 0; i < out_.materials.size(); ++i) reduce_emission(i), reduce_alpha(i);
+  reduce_colors();
   for (std::uint32_t i = 0; i < out_.materials.size(); ++i) {
-    reduce_emission(i);
-    reduce_alpha(i);
     reduce_maps(i);
     fold_metallic_roughness(i);
-    fold_color(i);
+    fold_coat(i);
+    fold_grain(i);
+    const bool folds_color = fold_color(i), folds_emission = fold_emission(i);
+    if (folds_color || folds_emission) note(Invisible::even_color);
   }
   reduce_animations();
+  reduce_glass();
   reduce_lights();
   reduce_normals();
   drop_unused_textures();

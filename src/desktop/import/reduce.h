@@ -7,8 +7,12 @@ namespace pocketray {
 // Views of the arrays.
 Scene view_of(const SceneArrays& arrays);
 
-// Reduces a valid scene whose vertices are posed. Pictures keep their bits, except that a folded texture tightens the
-// bounds by which rays are skipped. SceneArrays::reductions counts what is left out, for `plan`.
+// Reduces a valid scene whose vertices are posed. SceneArrays::reductions counts what is left out, for `plan`. Pictures
+// keep their bits, but for the following:
+//   - a folded texture tightens the bounds by which rays are skipped;
+//   - a lamp whose texture is folded gets the closed form of one without;
+//   - normals within rounding of those of inclined faces become these;
+//   - rays through glass of index 1 no longer begin anew at its surfaces, and the default camera frames what is left.
 void reduce(SceneArrays* arrays);
 
 }  // namespace pocketray

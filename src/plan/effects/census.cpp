@@ -109,6 +109,7 @@ Census take_census(const Scene& scene, const Settings& settings) {
     const Material m =
         scene.material_maps.count ? lobe_bounds(scene.materials[i], scene.material_maps[i]) : scene.materials[i];
     const ClearCoat* coat = coat_of(scene, i);
+    if (coat && !shows_coat(scene, *coat)) note(&c, Invisible::black_coat, 1), coat = nullptr;
     const bool shines = coat && has_lobe(*coat);
     bool is_bumpy = coat && shows_normal_map(scene, coat->normal, coat->normal_scale);
     bool has_normal_map = coat && coat->normal.texture != kNone, is_occluded = false;
@@ -123,7 +124,11 @@ Census take_census(const Scene& scene, const Settings& settings) {
     }
     c.bumpy += is_bumpy, c.coated += coat != nullptr;
     note(&c, Invisible::flat_normal_map, has_normal_map && !is_bumpy);
-    c.grained += !is_zero(m.specular) && has_grain(scene, i);
+    if (!is_zero(m.specular) && has_grain(scene, i)) {
+      const bool shows = shows_grain(scene, scene.grains[i]);
+      c.grained += shows;
+      note(&c, Invisible::black_grain, !shows);
+    }
     c.with_levels += reads_levels(scene, i);
     if (reads_second(scene, i))
       ++c.second_uv;
@@ -150,6 +155,8 @@ Census take_census(const Scene& scene, const Settings& settings) {
   }
   count_lights(scene, &c);
   c.has_normals = shows_vertex_normals(scene);
+  c.has_colors = shows_vertex_colors(scene);
+  note(&c, Invisible::white_vertex_colors, c.has_colors ? 0 : scene.colors.count);
   c.is_animated = moves(scene);
   if (is_animated(scene) && !c.is_animated) note(&c, Invisible::still_animation, scene.animations.count);
   return c;

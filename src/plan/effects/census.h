@@ -13,7 +13,7 @@ struct Census {
                 second_uv_occlusion = 0,  // of these, only the occlusion texture does
       coated = 0;
   std::uint32_t lights[3] = {0, 0, 0}, light_count = 0;  // that shine on anything
-  bool has_normals = false, is_animated = false;
+  bool has_normals = false, has_colors = false, is_animated = false;
   // Contents that no picture shows, in the scene or left out of it.
   std::uint32_t invisible[kInvisibleCount] = {};
 };

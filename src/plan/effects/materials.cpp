@@ -17,8 +17,8 @@ EffectDecision decide_mip_map(const EffectCall& c) {
 }
 
 EffectDecision decide_vertex_color(const EffectCall& c) {
-  const bool any = c.scene.colors.count > 0;
-  return decided(any, any ? "vertices have colours" : "no vertex has a colour");
+  if (c.census.has_colors) return decided(true, "vertices have colours");
+  return with_invisible(c, decided(false, "no vertex has a colour"), Invisible::white_vertex_colors);
 }
 
 EffectDecision decide_smooth_normal(const EffectCall& c) {
@@ -31,7 +31,8 @@ EffectDecision decide_smooth_normal(const EffectCall& c) {
 constexpr EffectRule kRules[] = {
     {Effect::specular, [](const EffectCall& c) { return by_materials(c, c.census.specular, "shine"); }},
     {Effect::mirror, [](const EffectCall& c) { return by_materials(c, c.census.mirror, "mirror"); }},
-    {Effect::refraction, [](const EffectCall& c) { return by_materials(c, c.census.transmitting, "transmit"); }},
+    {Effect::refraction,
+     [](const EffectCall& c) { return by_materials(c, c.census.transmitting, "transmit", Invisible::clear_glass); }},
     {Effect::absorption, [](const EffectCall& c) { return by_materials(c, c.census.absorbing, "absorb"); }},
     {Effect::alpha_mask,
      [](const EffectCall& c) { return by_materials(c, c.census.masked, "have holes", Invisible::mask_without_holes); }},
@@ -51,8 +52,10 @@ constexpr EffectRule kRules[] = {
      [](const EffectCall& c) {
        return by_materials(c, c.census.bumpy, "have a normal texture", Invisible::flat_normal_map);
      }},
-    {Effect::anisotropy, [](const EffectCall& c) { return by_materials(c, c.census.grained, "have a grain"); }},
-    {Effect::clear_coat, [](const EffectCall& c) { return by_materials(c, c.census.coated, "have a clear coat"); }},
+    {Effect::anisotropy,
+     [](const EffectCall& c) { return by_materials(c, c.census.grained, "have a grain", Invisible::black_grain); }},
+    {Effect::clear_coat,
+     [](const EffectCall& c) { return by_materials(c, c.census.coated, "have a clear coat", Invisible::black_coat); }},
     {Effect::mip_map, decide_mip_map},
     {Effect::back_face_culling,
      [](const EffectCall& c) { return by_materials(c, c.census.one_sided, "are one-sided"); }},

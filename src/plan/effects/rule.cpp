@@ -32,12 +32,24 @@ EffectDecision by_materials(const EffectCall& call, std::uint32_t count, const c
 }
 
 EffectDecision with_invisible(const EffectCall& call, EffectDecision decision, Invisible invisible) {
-  static constexpr const char* kTexts[] = {
-      "with a black texture", "with alpha 1",          "with alpha above its cut-off",
-      "with a flat one",      "with a white one",      "with a uniform one",
-      "with a uniform one",   "with that of its face", "still",
-      "with intensity 0",     "with intensity 0",      "with intensity 0",
-      "out of range",         "out of range"};
+  static constexpr const char* kTexts[] = {"with a black texture",
+                                           "with alpha 1",
+                                           "with alpha above its cut-off",
+                                           "with a flat one",
+                                           "with a white one",
+                                           "with a uniform one",
+                                           "with a uniform one",
+                                           "with that of its face",
+                                           "still",
+                                           "with intensity 0",
+                                           "with intensity 0",
+                                           "with intensity 0",
+                                           "out of range",
+                                           "out of range",
+                                           "with index 1 and no tint",
+                                           "white",
+                                           "with a black texture",
+                                           "with a black texture"};
   static_assert(sizeof kTexts / sizeof kTexts[0] == kInvisibleCount, "one for each");
   const int what = static_cast<int>(invisible);
   CHECK(what < kInvisibleCount && decision.reason[0] != 0);
