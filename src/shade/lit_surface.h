@@ -57,12 +57,14 @@ inline bool is_matte(const LitSurface& to) {
 }
 
 // Returns whether to skip light that reaches the viewer with at most this radiance, because there is none or because it
-// cannot change a displayed level.
+// cannot change a displayed level. Without shadows it saves no ray, but the picture must be that with them.
 template <EffectMask mask>
 inline bool is_negligible(Tracer* tracer, const LitSurface& to, const Vec3& light_out) {
   const float bound = max_component(light_out * to.weight);
   if (!(bound > 0)) return true;
-  return has(mask, Effect::shadow) && leave_out(tracer, bound);
+  if (!leave_out(tracer, bound)) return false;
+  if constexpr (!has(mask, Effect::shadow)) --tracer->rays_left_out;
+  return true;
 }
 
 }  // namespace pocketray

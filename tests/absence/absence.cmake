@@ -5,7 +5,7 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_BUILD_TYPE STREQUAL "Release" 
   add_executable(absence_all tests/absence/render_frames.cpp)
   target_link_libraries(absence_all PRIVATE pocketray_test_support)
   file(GLOB sources CONFIGURE_DEPENDS src/plan/*.cpp src/plan/effects/*.cpp src/shade/*.cpp src/engine/*.cpp)
-  foreach(build "cornell 0x8c87" "statue 0x3c03" "seesaw 0x23c03" "cube 0x8881")
+  foreach(build "cornell 0x8c87" "statue 0x3c03" "seesaw 0x23c03" "cube 0x8880" "furnace 0x8081" "lanterns 0x20009c85")
     separate_arguments(build)
     list(GET build 0 scene)
     list(GET build 1 effects)

@@ -1,6 +1,7 @@
 #include "indirect/environment.h"
 #include "indirect/environment_lights.h"
 #include "plan/effects/rule.h"
+#include "plan/effects/unobstructed.h"
 #include "shade/point_groups.h"
 
 namespace pocketray {
@@ -22,9 +23,19 @@ EffectDecision by_lights(const EffectCall& c, LightKind kind, const char* what) 
   return with_invisible(c, decision, distant_light(kind));
 }
 
+// Returns whether nothing casts a shadow, whatever the view. Normals other than a triangle's own let in light from
+// below it, virtual lights lie where surfaces meet, and with many lights, shadow rays choose which of them count.
+bool casts_no_shadow(const EffectCall& c) {
+  const Census& census = c.census;
+  if (census.has_normals || census.bumpy > 0 || selects_lights(c)) return false;
+  if (c.indirect && (c.indirect->effects & bit(Effect::instant_radiosity))) return false;
+  return !environment_of(c.scene) && is_unobstructed(c.scene);
+}
+
 EffectDecision decide_shadow(const EffectCall& c) {
   if (c.census.light_count == 0 && c.census.emissive == 0) return decided(false, "no light");
   if (c.census.scattering == 0) return decided(false, "no material scatters light");
+  if (casts_no_shadow(c)) return decided(false, "nothing stands between a surface and a light");
   return decided(true, "lit, and %u of %u materials scatter", c.census.scattering, c.census.materials);
 }
 
