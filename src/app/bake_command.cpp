@@ -176,11 +176,6 @@ void add_bake_command(Command program, int* exit_status) {
                   "exact, or compressed: blocks of 4 to 12 bits a texel instead of 32; their errors are printed")
       .one_of({"exact", "compressed"})
       .capture_default_str();
-  command
-      .add_option("--crease-angle", options->model.crease_angle,
-                  "for models without normals: shade edges below this angle smoothly, in degrees (glTF: always flat)")
-      .capture_default_str()
-      .range(0.0f, 180.0f);
   command.add_flag("--radiosity", options->radiosity,
                    "solve the light between diffuse surfaces and store it; costs seconds to minutes here and little on "
                    "the device. It is solved for the pose at time 0");

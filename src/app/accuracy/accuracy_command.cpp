@@ -118,10 +118,9 @@ void add_accuracy_command(Command program, const Team& team, int* exit_status) {
       .capture_default_str();
   command.add_flag("--count-instructions", o->starts_valgrind,
                    "count instructions with valgrind where the CPU does not: a minute or more, hours with many lights");
-  command.add_flag(
-      "--bake-choices", o->bakes,
-      "also bake the scene with other --textures, --texture-max, --crease-angle, without mip maps, and with "
-      "--radiosity of few to many patches: what each saves and errs. Says first how long the bakes take");
+  command.add_flag("--bake-choices", o->bakes,
+                   "also bake the scene with other --textures, --texture-max, without mip maps, and with "
+                   "--radiosity of few to many patches: what each saves and errs. Says first how long the bakes take");
   command.add_flag("--restart", o->restart, "discard the measurements in the folder and start over");
   add_json_option(command, &o->common.json);
   command.add_option("--counting-folder", o->counting_folder, "").group("");  // for the run under valgrind
