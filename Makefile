@@ -4,6 +4,8 @@
 #   PREFIX=   where `make install` goes
 #   TESTS=    build and run only the tests that match this regular expression
 #   JSON=     also write the table of `make hardcases` or `make mutants` to this file
+#   SHARE=    run only this share of the hard cases' inputs
+#   SUITES=   run the hard cases of these suites only
 DEVICE ?=
 PREFIX ?= /usr/local
 TESTS ?= .
@@ -42,7 +44,7 @@ endif
 BUILD := $(if $(CROSS_PREFIX),build-$(CLASS)-$(notdir $(CROSS_PREFIX:%-=%)),build$(CLASS:%=-%))
 POCKETRAY := $(BUILD)/pocketray
 
-.PHONY: all run setup-tests test test-box hardcases softfloat mutants trials faults demo-split split-table motion-table fuzz flips bench bench-embree bench-povray bench-device contact-sheet mach-bands rooms package format tidy clean install help setup configure
+.PHONY: all run setup-tests test test-box hardcases pages softfloat mutants trials faults demo-split split-table motion-table fuzz flips bench bench-embree bench-povray bench-device contact-sheet mach-bands rooms package format tidy clean install help setup configure
 all: configure
 	cmake --build $(BUILD) -j$(JOBS)$(if $(CLASS), --target pocketray)
 ifneq ($(CLASS),)
@@ -90,7 +92,14 @@ test-box: configure
 	@tests/box/run.sh $(POCKETRAY) $(MACHINES) || [ $$? = 77 ]
 
 hardcases: setup-tests configure
-	@JSON=$(if $(JSON),$(abspath $(JSON))) cmake --build $(BUILD) -j$(JOBS) --target hardcases
+	@JSON=$(if $(JSON),$(abspath $(JSON))) SHARE=$(SHARE) SUITES="$(SUITES)" \
+	  cmake --build $(BUILD) -j$(JOBS) --target hardcases
+
+# The pages that the program writes, in Chromium; screenshots stay in the build folder's pages/.
+pages: configure
+	@toolchains/setup.sh pages
+	cmake --build $(BUILD) -j$(JOBS) --target pocketray
+	cd $(BUILD) && ctest --output-on-failure -R '^pages$$'
 
 softfloat: setup-tests configure
 	@cmake --build $(BUILD) -j$(JOBS) --target softfloat
@@ -271,7 +280,9 @@ help:
 	@echo "make test         build and run all tests (TESTS=regex: only matching ones)"
 	@echo "make test-box     boot emulated handhelds and use the program there (MACHINES='cortex-a7 aarch64': some)"
 	@echo "make softfloat    compare the arithmetic for CPUs without FPU with this CPU's, 10^9 pairs of floats"
-	@echo "make hardcases    run every hard case in full and write $(BUILD)/hardcases.html (JSON=FILE: also write JSON)"
+	@echo "make hardcases    run every hard case in full and write $(BUILD)/hardcases.html (JSON=FILE: also write JSON;"
+	@echo "                  SHARE=0.01: a share of the inputs; SUITES='hard shade': just these, keeping other suites' results)"
+	@echo "make pages        look at the pages of \`pocketray accuracy\` and of the hard cases in Chromium, about 300 MB"
 	@echo "make mutants      apply deliberate faults, one at a time: do the tests notice? (MUTANTS=--list: names,"
 	@echo "                  MUTANTS='--only x': just that one, JSON=FILE: also write JSON)"
 	@echo "make trials       extend a copy of the sources by one entry of each list and test it (TRIALS='lobe device': some)"

@@ -14,6 +14,9 @@ void survive_closed_pipes();
 // True if standard output is a pipe or socket whose reader has gone.
 bool is_output_closed();
 
+// Columns of the terminal that standard output is; 80 if it does not tell, and 0 if it is no terminal.
+int terminal_columns();
+
 // From here on, standard output and error go to the end of that file, which is created if missing.
 bool log_to_file(const char* path, FileError* error);
 // Reverts that: the file has its previous content again, and printed text goes to its previous destination.

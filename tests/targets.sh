@@ -9,7 +9,7 @@ for name in $names; do
     absence | bench_embree | install | documents | source_rules | assertions | mutation_list) echo all ;;
     cli_* | serve | conformance | reconnects | numbers | packages | blender) echo pocketray_sealed ;;
     objects | turns | hard_page | device_profiles | toolchains) echo pocketray_core ;;
-    mpi | wrong_cpu | device_parts) echo pocketray ;;
+    mpi | wrong_cpu | device_parts | pages) echo pocketray ;;
     progressive_cost) echo progressive_cost ;;
     *) echo "test_$name" ;;
   esac

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # setup.sh GROUP... : installs the packages that a build needs and this machine lacks. Silent if none is missing.
-# Groups: desktop tests ci box box-kernel bench-embree bench-povray contact-sheet mpi clang format tidy package x86-32, and the CPU classes. Run by the Makefile and by .ci/run.
+# Groups: desktop tests ci box box-kernel bench-embree bench-povray contact-sheet pages mpi clang format tidy package x86-32, and the CPU classes. Run by the Makefile and by .ci/run.
 set -eu
 
 # Required packages of each group. "command=package" is installed if the command exists; a plain name is a Debian package.
@@ -15,6 +15,7 @@ required() {
     bench-embree) echo libembree-dev unzip=unzip ;;
     bench-povray) echo povray=povray ;;
     contact-sheet) echo blender=blender montage=imagemagick python3=python3 python3-numpy fonts-dejavu-core ;;
+    pages) echo chromium=chromium gnuplot=gnuplot-nox python3=python3 fonts-dejavu-core ;;
     mpi) echo mpirun=openmpi-bin libopenmpi-dev ;;
     clang) echo clang++=clang ;;
     format) echo clang-format=clang-format ;;

@@ -6,6 +6,7 @@
 #include <signal.h>
 #include <stdio.h>
 #include <string.h>
+#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include "platform/check.h"
@@ -52,6 +53,12 @@ void survive_closed_pipes() { signal(SIGPIPE, SIG_IGN); }
 bool is_output_closed() {
   pollfd output = {STDOUT_FILENO, POLLOUT, 0};
   return poll(&output, 1, 0) == 1 && (output.revents & (POLLERR | POLLHUP)) != 0;
+}
+
+int terminal_columns() {
+  if (!isatty(STDOUT_FILENO)) return 0;
+  winsize size = {};
+  return ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
 }
 
 bool log_to_file(const char* path, FileError* error) {

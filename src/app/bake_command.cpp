@@ -161,32 +161,30 @@ int run(const BakeOptions& o) {
 
 void add_bake_command(Command program, int* exit_status) {
   auto options = std::make_shared<BakeOptions>();
-  Command command = program.add_subcommand("bake", "convert a model into one .pray file, ready for a device to load");
-  command.add_option("IN", options->input, "glTF, OBJ, PLY, STL, … or a built-in scene").required();
-  command.add_option("-o,--output", options->output, "the .pray file to write").required();
-  command
-      .add_option("--texture-max", options->model.texture_side_max,
-                  "longest texture side in texels; larger textures are halved until they fit")
-      .capture_default_str()
-      .range(1u, kTextureSideMax);
-  command.add_flag("--no-mip-maps", options->no_mip_maps,
-                   "store no mip levels: textures take a quarter less memory but sparkle where they appear small");
-  command
-      .add_option("--textures", options->textures,
-                  "exact, or compressed: blocks of 4 to 12 bits a texel instead of 32; their errors are printed")
-      .one_of({"exact", "compressed"})
+  Command command = program.add_subcommand("bake", "convert a model into one .pray file for devices");
+  command.add_option("IN", options->input, "a model (glTF, OBJ, PLY, STL, …) or a built-in scene").required();
+  command.chapter("Output");
+  command.add_option("-o,--output FILE", options->output, "the .pray file to write").required();
+  add_json_option(command, &options->json);
+  command.chapter("Textures and meshes");
+  command.add_option("--texture-max N", options->model.texture_side_max, "halve textures with more texels a side")
+      .range(1, kTextureSideMax)
       .capture_default_str();
-  command.add_flag("--radiosity", options->radiosity,
-                   "solve the light between diffuse surfaces and store it; costs seconds to minutes here and little on "
-                   "the device. It is solved for the pose at time 0");
-  command
-      .add_option(
-          "--patches", options->patch_count,
-          "with --radiosity: about how many patches exchange light. A quarter takes a third of the time and bytes "
-          "and hardly errs more; `pocketray accuracy IN --bake-choices` measures it")
-      .range(kPatchCountMin, kPatchCountMax)
-      .default_str("1200");
+  command.add_option("--textures HOW", options->textures, "how textures are stored")
+      .one_of({"exact", "compressed"})
+      .capture_default_str()
+      .details("compressed: blocks of 4 to 12 bits a texel instead of 32; their errors are printed.");
+  command.add_flag("--no-mip-maps", options->no_mip_maps, "store no smaller levels of textures")
+      .details("Textures then take a quarter less memory but sparkle where they appear small.");
   add_environment_option(command, &options->environment);
+  command.add_flag("--radiosity", options->radiosity, "solve and store the light between surfaces")
+      .details("Takes seconds to minutes here and little on the device. The pose is that of time 0.");
+  command.add_option("--patches N", options->patch_count, "with --radiosity: patches that exchange light")
+      .range(kPatchCountMin, kPatchCountMax)
+      .default_str("about 1200")
+      .details(
+          "A quarter takes a third of the time and bytes and hardly errs more; `pocketray accuracy IN --bake-choices` "
+          "measures it.");
   add_animation_option(command, &options->animation);
   add_reading_options(command, &options->model.reading);
   std::vector<std::string> names;
@@ -194,13 +192,19 @@ void add_bake_command(Command program, int* exit_status) {
   for (const AccelInfo* info : kAccelList) {
     if (!info->magic) continue;  // it has no data
     names.push_back(info->name);
-    help += std::string(help.empty() ? "" : ", or ") + info->name +
-            (*info->help ? std::string(" (") + info->help + ")" : "");
+    if (*info->help) help += std::string(info->name) + ": " + info->help + ". ";
   }
-  command.add_option("--accel", options->accel, "accelerator to store in the file: " + help)
+  command.chapter("Output");
+  command.add_option("--accel NAME", options->accel, "structure stored for tracing")
       .one_of(names)
-      .capture_default_str();
-  add_json_option(command, &options->json);
+      .capture_default_str()
+      .details(help);
+  command.everyday("Output", {"--output", "--accel"});
+  command.everyday("Light", {"--radiosity", "--environment"});
+  command.everyday("Model", {"--up", "--animation"});
+  command.everyday("Textures", {"--texture-max", "--textures"});
+  command.example("pocketray bake model.glb -o model.pray");
+  command.example("pocketray bake cornell --radiosity -o cornell.pray");
   command.callback([=] { *exit_status = run(*options); });
 }
 

@@ -5,10 +5,10 @@
 #include "app/commands.h"
 #include "app/options.h"
 #include "base/seal.h"
-#include "session/front_file.h"
 #include "budget/front_prices.h"
 #include "effect/effect_list.h"
 #include "session/cache.h"
+#include "session/front_file.h"
 #include "session/interrupt.h"
 #include "session/measure.h"
 #include "session/note.h"
@@ -223,20 +223,24 @@ void add_bench_command(Command program, int* exit_status) {
   Command command = program.add_subcommand("bench", "measure the cost per pixel, scanline, ray and effect");
   add_scene_options(command, options.get());
   add_coherence_options(command, options.get(), "off");
-  command.add_option("--frames", *frames, "frames to measure, after one warm-up frame").capture_default_str();
-  command.add_flag("--no-prices", *no_prices, "skip pricing each effect");
-  command.add_flag(
-      "--sparse", *sparse,
-      "also measure the cost per pixel when only 2, 10, 50 or 100 % of pixels are traced, scattered or in patches");
+  command.chapter("Measurement");
+  command.add_option("--frames N", *frames, "frames to measure, after one that warms up")
+      .range(1, kFrameCountMax)
+      .capture_default_str();
+  command.add_flag("--no-prices", *no_prices, "do not measure each effect");
+  command.add_flag("--sparse", *sparse, "also measure pixels when few are traced")
+      .details("2, 10, 50 and 100 % of the pixels, scattered and in patches.");
+  Option priced = command.add_option("--front [FILE]", *front, "instead, measure and save prices for --budget-ms")
+                      .details("In FILE, or in the scene's file in the cache. `render` and `view` choose from them.");
   add_json_option(command, &options->json);
-  Option priced = command.add_option(
-      "--front", *front,
-      "instead measure the settings that --budget-ms chooses from, and save their prices in FILE or the cache");
-  priced.expected(0, 1);
   add_look_options(command, options.get(), {"--front"});
-  priced.excludes(command.get_option("--coherence"));
+  priced.excludes(command.get_option("--coherence"), "the front's frames are traced whole");
   for (const char* chosen : {"--samples", "--depth", "--area-lights", "--cut-off", "--texture-filter", "--normals"})
-    priced.excludes(command.get_option(chosen));
+    priced.excludes(command.get_option(chosen), "the front has settings of its own");
+  command.everyday("Picture", {"--size", "--quality", "--effects"});
+  command.everyday("Machine", {"--threads", "--isa", "--accel", "--emulate"});
+  command.everyday("Measurement", {"--frames", "--no-prices", "--sparse", "--front", "--json"});
+  command.example("pocketray bench cornell --threads 1");
   command.callback([=] {
     options->outputs = {{"--front", *front}};
     *exit_status =

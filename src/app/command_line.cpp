@@ -1,195 +1,215 @@
 #include "app/command_line.h"
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cctype>
+#include <cerrno>
 #include <cmath>
+#include <cstdio>
 #include <cstdlib>
-#include <sstream>
-#include <utility>
 
+#include "app/command_spec.h"
 #include "base/check.h"
 
 namespace pocketray {
 namespace {
 
-// CLI11's range checks accept a NaN, which is neither below nor above.
-std::string refuse_meaningless(const std::string& text, bool is_real) {
-  if (text.empty()) return "must not be empty";
-  return is_real && !std::isfinite(std::strtod(text.c_str(), nullptr)) ? "must be a finite number" : "";
+// "-o,--output FILE" → names, the long one first, and placeholder.
+void split_name(const std::string& text, OptionSpec* option) {
+  const std::size_t space = text.find(' ');
+  std::string names = text.substr(0, space);
+  if (space != std::string::npos) option->placeholder = text.substr(space + 1);
+  option->is_positional = names[0] != '-';
+  for (std::size_t comma; !names.empty(); names = comma == std::string::npos ? "" : names.substr(comma + 1)) {
+    comma = names.find(',');
+    option->names.push_back(names.substr(0, comma));
+  }
+  std::stable_partition(option->names.begin(), option->names.end(),
+                        [](const std::string& name) { return name.compare(0, 2, "--") == 0; });
+  if (option->placeholder[0] != '[') return;
+  option->value_is_optional = true;
+  option->placeholder = option->placeholder.substr(1, option->placeholder.size() - 2);
 }
 
-// Number of letters to insert, delete or replace to turn one word into the other [Wagner & Fischer 1974].
-std::size_t edit_distance(const std::string& a, const std::string& b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  for (std::size_t j = 0; j < row.size(); ++j) row[j] = j;
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    std::size_t corner = row[0];
-    row[0] = i + 1;
-    for (std::size_t j = 0; j < b.size(); ++j) {
-      const std::size_t replaced = corner + (a[i] != b[j]);
-      corner = row[j + 1];
-      row[j + 1] = std::min({replaced, row[j] + 1, corner + 1});
-    }
-  }
-  return row.back();
+OptionSpec* declare(CommandSpec* command, const std::string& name, ValueKind kind, const std::string& help) {
+  auto option = std::make_unique<OptionSpec>();
+  split_name(name, option.get());
+  option->kind = kind;
+  option->help = help;
+  option->chapter = command->chapter;
+  if (option->placeholder.empty() && !option->is_positional)
+    option->placeholder = kind == ValueKind::text ? "VALUE" : kind == ValueKind::whole_number ? "N" : "X";
+  for (const std::string& each : option->names) CHECK(find_option(*command, each) == nullptr);
+  command->options.push_back(std::move(option));
+  return command->options.back().get();
 }
 
-// ", did you mean 'render'?", or empty if no name is close.
-std::string suggestion(const std::string& word, const std::vector<std::string>& names) {
-  std::string nearest;
-  std::size_t least = 1 + std::min<std::size_t>(word.size() / 3, 3);
-  for (const std::string& name : names) {
-    const std::size_t distance = edit_distance(word, name);
-    if (distance < least) least = distance, nearest = name;
-  }
-  return nearest.empty() ? "" : ", did you mean '" + nearest + "'?";
+bool is_whole_number(const std::string& text) {
+  const std::size_t sign = text[0] == '-' || text[0] == '+';
+  return text.size() > sign && text.find_first_not_of("0123456789", sign) == std::string::npos;
 }
 
-std::vector<std::string> option_names(const CLI::App& app) {
-  std::vector<std::string> names;
-  for (const CLI::Option* option : app.get_options())
-    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
-  return names;
+// Stores a number of type T, from the text in full.
+template <class T>
+bool store_whole(const std::string& text, T* variable) {
+  errno = 0;
+  const long long value = is_whole_number(text) ? std::strtoll(text.c_str(), nullptr, 10) : 0;
+  if (!is_whole_number(text) || errno || static_cast<long long>(static_cast<T>(value)) != value) return false;
+  *variable = static_cast<T>(value);
+  return true;
 }
 
-// Names the wrong word, if any: an unknown command, or an unknown option of a command.
-std::string unknown_word(const CLI::App& app, const std::vector<std::string>& words) {
-  if (words.empty()) return "";
-  const CLI::App* command = nullptr;
-  std::vector<std::string> names;
-  for (const CLI::App* each : app.get_subcommands([](const CLI::App*) { return true; })) {
-    names.push_back(each->get_name());
-    if (each->get_name() == words[0]) command = each;
-  }
-  if (!names.empty() && !command && words[0][0] != '-')
-    return "there is no command '" + words[0] + "'" + suggestion(words[0], names);
-  const std::vector<std::string> options = option_names(command ? *command : app);
-  for (const std::string& word : words) {
-    const std::string name = word.substr(0, word.find('='));
-    if (name.compare(0, 2, "--") == 0 && std::find(options.begin(), options.end(), name) == options.end())
-      return "there is no option " + name + suggestion(name, options);
-  }
-  return "";
+bool store_real(const std::string& text, double* variable) {
+  char* end;
+  const double value = std::strtod(text.c_str(), &end);
+  if (text.empty() || std::isspace(static_cast<unsigned char>(text[0])) || *end || !std::isfinite(value)) return false;
+  *variable = value;
+  return true;
+}
+
+std::string text_of(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.6g", value);
+  return text;
 }
 
 }  // namespace
 
-Option Option::required() { return Option(option_->required()); }
+Option Option::required() { return spec_->is_required = true, *this; }
 
-Option Option::capture_default_str() { return Option(option_->capture_default_str()); }
+Option Option::capture_default_str() { return default_str(spec_->current()); }
 
-Option Option::default_str(const std::string& text) { return Option(option_->default_str(text)); }
+Option Option::default_str(const std::string& text) { return spec_->default_text = text, *this; }
 
-Option Option::group(const std::string& name) { return Option(option_->group(name)); }
+Option Option::details(const std::string& text) { return spec_->details = text, *this; }
 
-Option Option::needs(Option other) { return Option(option_->needs(other.option_)); }
+Option Option::price(const std::string& text) { return spec_->price = text, *this; }
 
-Option Option::excludes(Option other) { return Option(option_->excludes(other.option_)); }
+Option Option::hidden() { return spec_->is_hidden = true, *this; }
 
-Option Option::expected(int value_count_min, int value_count_max) {
-  return Option(option_->expected(value_count_min, value_count_max));
+Option Option::needs(Option other) { return spec_->needs.push_back(other.spec_), *this; }
+
+Option Option::excludes(Option other, const std::string& because) {
+  spec_->excludes.push_back({other.spec_, because});
+  other.spec_->excludes.push_back({spec_, because});
+  return *this;
 }
 
-Option Option::allow_extra_args(bool allowed) { return Option(option_->allow_extra_args(allowed)); }
+Option Option::one_value_each() { return spec_->one_value_each = true, *this; }
 
 Option Option::check(std::function<std::string(const std::string& text)> refusal) {
-  return Option(option_->check(std::move(refusal)));
+  return spec_->checks.push_back(std::move(refusal)), *this;
 }
 
-Option Option::one_of(const std::vector<std::string>& values) { return Option(option_->check(CLI::IsMember(values))); }
+Option Option::one_of(const std::vector<std::string>& values) { return spec_->choices = values, *this; }
 
-Option Option::range(int low, int high) { return Option(option_->check(CLI::Range(low, high))); }
+Option Option::range(double low, double high) {
+  CHECK_LE(low, high);
+  spec_->has_range = true, spec_->low = low, spec_->high = high;
+  return *this;
+}
 
-Option Option::range(std::uint32_t low, std::uint32_t high) { return Option(option_->check(CLI::Range(low, high))); }
-
-Option Option::range(float low, float high) { return Option(option_->check(CLI::Range(low, high))); }
-
-Option Option::range(double low, double high) { return Option(option_->check(CLI::Range(low, high))); }
-
-std::size_t Option::count() const { return option_->count(); }
+std::size_t Option::count() const { return spec_->count; }
 
 Command Command::add_subcommand(const std::string& name, const std::string& help) {
-  return Command(app_->add_subcommand(name, help));
+  auto command = std::make_unique<CommandSpec>();
+  command->name = name;
+  command->help = help;
+  command->group = spec_->chapter;
+  command->parent = spec_;
+  spec_->commands.push_back(std::move(command));
+  return Command(spec_->commands.back().get());
 }
 
 Option Command::add_option(const std::string& name, std::string& variable, const std::string& help) {
-  return Option(app_->add_option(name, variable, help));
+  OptionSpec* option = declare(spec_, name, ValueKind::text, help);
+  option->store = [&variable](const std::string& text) { return variable = text, true; };
+  option->current = [&variable] { return variable; };
+  return Option(option);
 }
 
 Option Command::add_option(const std::string& name, std::vector<std::string>& variable, const std::string& help) {
-  return Option(app_->add_option(name, variable, help));
+  OptionSpec* option = declare(spec_, name, ValueKind::text, help);
+  option->is_list = true;
+  option->store = [option, &variable](const std::string& text) {
+    if (option->value_count++ == 0) variable.clear();  // the default
+    return variable.push_back(text), true;
+  };
+  option->current = [&variable] { return enumerated(variable, " and "); };
+  return Option(option);
 }
 
 Option Command::add_option(const std::string& name, int& variable, const std::string& help) {
-  return Option(app_->add_option(name, variable, help));
+  OptionSpec* option = declare(spec_, name, ValueKind::whole_number, help);
+  option->store = [&variable](const std::string& text) { return store_whole(text, &variable); };
+  option->current = [&variable] { return std::to_string(variable); };
+  return Option(option);
 }
 
 Option Command::add_option(const std::string& name, std::uint32_t& variable, const std::string& help) {
-  return Option(app_->add_option(name, variable, help));
+  OptionSpec* option = declare(spec_, name, ValueKind::whole_number, help);
+  option->store = [&variable](const std::string& text) { return store_whole(text, &variable); };
+  option->current = [&variable] { return std::to_string(variable); };
+  return Option(option);
 }
 
 Option Command::add_option(const std::string& name, float& variable, const std::string& help) {
-  return Option(app_->add_option(name, variable, help));
+  OptionSpec* option = declare(spec_, name, ValueKind::number, help);
+  option->store = [&variable](const std::string& text) {
+    double value = 0;
+    if (!store_real(text, &value) || !std::isfinite(static_cast<float>(value))) return false;
+    return variable = static_cast<float>(value), true;
+  };
+  option->current = [&variable] { return text_of(static_cast<double>(variable)); };
+  return Option(option);
 }
 
 Option Command::add_option(const std::string& name, double& variable, const std::string& help) {
-  return Option(app_->add_option(name, variable, help));
+  OptionSpec* option = declare(spec_, name, ValueKind::number, help);
+  option->store = [&variable](const std::string& text) { return store_real(text, &variable); };
+  option->current = [&variable] { return text_of(variable); };
+  return Option(option);
 }
 
 Option Command::add_flag(const std::string& name, bool& variable, const std::string& help) {
-  return Option(app_->add_flag(name, variable, help));
+  OptionSpec* option = declare(spec_, name, ValueKind::flag, help);
+  option->placeholder = "";
+  option->store = [&variable](const std::string&) { return variable = true; };
+  return Option(option);
 }
 
 Option Command::get_option(const std::string& name) const {
-  CLI::Option* option = app_->get_option_no_throw(name);
+  OptionSpec* option = find_option(*spec_, name);
   CHECK(option != nullptr);
   return Option(option);
 }
 
-void Command::footer(const std::string& text) { app_->footer(text); }
+void Command::chapter(const std::string& title) { spec_->chapter = title; }
 
-void Command::callback(std::function<void()> run) { app_->callback(std::move(run)); }
+void Command::everyday(const std::string& heading, const std::vector<std::string>& names) {
+  EverydayGroup group = {heading, {}};
+  for (const std::string& name : names)
+    if (const OptionSpec* option = find_option(*spec_, name)) group.options.push_back(option);
+  if (!group.options.empty()) spec_->everyday.push_back(group);
+}
+
+void Command::example(const std::string& line) { spec_->examples.push_back(line); }
+
+void Command::about(const std::string& paragraph) { spec_->about.push_back(paragraph); }
+
+void Command::footer(const std::string& text) { spec_->footer = text; }
+
+void Command::callback(std::function<void()> run) { spec_->run = std::move(run); }
 
 CommandLine::CommandLine(const std::string& program_name, const std::string& description)
-    : app_(std::make_unique<CLI::App>(description, program_name)) {}
+    : program_(std::make_unique<CommandSpec>()) {
+  program_->name = program_name;
+  program_->help = description;
+}
 
 CommandLine::~CommandLine() = default;
 
-void CommandLine::set_version_flag(const std::string& name, const std::string& version) {
-  app_->set_version_flag(name, version);
-}
+void CommandLine::set_version(const std::string& text) { version_ = text; }
 
-void CommandLine::require_subcommand(int count) { app_->require_subcommand(count); }
-
-void CommandLine::refuse_meaningless_values() {
-  for (CLI::App* command : app_->get_subcommands({}))
-    for (CLI::Option* option : command->get_options()) {
-      if (option->get_items_expected_min() == 0) continue;  // a flag, or an optional value
-      bool is_real = option->get_type_name().compare(0, 5, "FLOAT") == 0;
-      option->check([is_real](const std::string& text) { return refuse_meaningless(text, is_real); });
-    }
-}
-
-ParseResult CommandLine::parse(const std::vector<std::string>& words) {
-  ParseResult result;
-  try {
-    app_->parse(std::vector<std::string>(words.rbegin(), words.rend()));  // CLI11 takes the last word first
-  } catch (const CLI::ValidationError& error) {
-    result.error = error.what();
-  } catch (const CLI::ConversionError& error) {
-    result.error = error.what();
-  } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() != 0) {
-      result.usage = true;
-      result.error = unknown_word(*app_, words);
-      if (result.error.empty()) result.error = error.what();
-    } else {
-      std::ostringstream help;
-      app_->exit(error, help);
-      result.help = help.str();
-    }
-  }
-  return result;
-}
+void CommandLine::set_style(const TextStyle& style) { style_ = style; }
 
 }  // namespace pocketray

@@ -6,10 +6,12 @@
 
 #include "app/commands.h"
 #include "platform/standard_streams.h"
+#include "scene/baked.h"
 #include "session/interrupt.h"
 #include "session/note.h"
 #include "session/output.h"
 #include "session/report.h"
+#include "session/terminal.h"
 #ifdef POCKETRAY_HAVE_ACCURACY
 #include "app/accuracy/accuracy_command.h"
 #include "desktop/reference_view/reference_view.h"
@@ -20,6 +22,7 @@
 #ifdef POCKETRAY_HAVE_NETWORK
 #include "app/network/network_commands.h"
 #include "remote/client/servers.h"
+#include "wire/message.h"
 #endif
 #if defined POCKETRAY_HAVE_ACCURACY && defined POCKETRAY_HAVE_NETWORK
 #include "app/split_report/split_report_command.h"
@@ -52,16 +55,24 @@ void leave_team(const Team& team) {
 #endif
 }
 
+std::string version_text() {
+  std::string text = std::string("pocketray ") + POCKETRAY_VERSION + "\n.pray files, version " +
+                     std::to_string(kBakedVersion) + " (reads " + std::to_string(kBakedVersionMin) + " and later)\n";
+#ifdef POCKETRAY_HAVE_NETWORK
+  text += "render servers' protocol, version " + std::to_string(kWireVersion) + "\n";
+#endif
+  return text;
+}
+
 int run_command(int argument_count, char** arguments, const Team& team) {
   int exit_status = kExitDone;
   CommandLine line("pocketray",
-                   "pocketray ray-traces scenes for handheld screens in a block of memory sized once at start.\n"
-                   "Try:  pocketray render cornell -o cornell.png\n"
-                   "      pocketray view statue\n");
-  line.set_version_flag("--version", POCKETRAY_VERSION);
-  line.require_subcommand(1);
+                   "pocketray ray-traces scenes for handheld screens in a block of memory sized once at start.");
+  line.set_version(version_text());
+  line.set_style(output_style());
   Command program = line.program();
-  program.footer("Exit status: 0 done, 1 bad input, value or environment, 2 wrong usage, 3 interrupted.");
+  program.example("pocketray render cornell -o cornell.png");
+  program.example("pocketray view statue");
   OptionalParts parts;
   parts.team = team;
 #ifdef POCKETRAY_HAVE_NETWORK
@@ -70,18 +81,24 @@ int run_command(int argument_count, char** arguments, const Team& team) {
 #ifdef POCKETRAY_HAVE_ACCURACY
   parts.side_by_side = &kReferenceView;
 #endif
+  program.chapter("Pictures");
   add_render_command(program, parts, &exit_status);
   add_view_command(program, parts, &exit_status);
   add_bake_command(program, &exit_status);
   add_plan_command(program, &exit_status);
+  program.chapter("Measurements");
   add_bench_command(program, &exit_status);
 #ifdef POCKETRAY_HAVE_ACCURACY
   add_accuracy_command(program, team, &exit_status);
   add_reference_command(program, team, &exit_status);
-  add_coherence_report_command(program, &exit_status);
   add_compare_command(program, &exit_status);
+  add_coherence_report_command(program, &exit_status);
+#endif
+#if defined POCKETRAY_HAVE_ACCURACY && defined POCKETRAY_HAVE_NETWORK
+  add_split_report_command(program, &exit_status);
 #endif
 #ifdef POCKETRAY_HAVE_NETWORK
+  program.chapter("Render servers");
   ServeOnRanks on_ranks = nullptr;
 #ifdef POCKETRAY_HAVE_MPI
   on_ranks = serve_on_ranks;
@@ -90,14 +107,10 @@ int run_command(int argument_count, char** arguments, const Team& team) {
   add_scenes_command(program, &exit_status);
   add_keygen_command(program, &exit_status);
 #endif
-#if defined POCKETRAY_HAVE_ACCURACY && defined POCKETRAY_HAVE_NETWORK
-  add_split_report_command(program, &exit_status);
-#endif
-  line.refuse_meaningless_values();
   try {
     ParseResult parsed = line.parse({arguments + 1, arguments + argument_count});
     if (!parsed.error.empty()) {
-      print_note(parsed.error + " (see --help)");
+      print_note(parsed.error);
       return parsed.usage ? kExitUsage : kExitInput;
     }
     std::fputs(parsed.help.c_str(), stdout);

@@ -3,7 +3,7 @@
 #include <cstdlib>
 
 #include "accel/accel_list.h"
-#include "engine/light_map.h"
+#include "app/measured_prices.h"
 #include "plan/quality_level.h"
 #include "scene/builtin/builtin.h"
 
@@ -11,139 +11,161 @@ namespace pocketray {
 namespace {
 
 std::string scene_help() {
-  std::string text = "a built-in scene (";
+  std::vector<std::string> names;
   int count;
   const BuiltinScene* list = builtin_list(&count);
-  for (int i = 0; i < count; ++i) text += std::string(i ? ", " : "") + list[i].name;
-  text += "), a .pray file";
+  for (int i = 0; i < count; ++i) names.push_back(list[i].name);
+  std::string text;
+  for (const std::string& name : names) text += name + ", ";
 #ifdef POCKETRAY_HAVE_IMPORT
-  text += ", or a model: glTF, OBJ, PLY, STL, …";
+  return text + "a .pray file, or a model (glTF, OBJ, PLY, STL, …)";
+#else
+  return text + "or a .pray file";
 #endif
-  return text;
 }
 
-std::string device_names() {
-  std::string names;
-  for (const platform::Device& device : platform::kDevices)
-    names += std::string(names.empty() ? "" : ", ") + device.name;
+std::vector<std::string> device_names() {
+  std::vector<std::string> names;
+  for (const platform::Device& device : platform::kDevices) names.push_back(device.name);
   return names;
 }
 
-Option declare_setting(Command command, const SettingRow& row, SettingOption* option) {
-  char range[128];
-  describe_range(row, range, sizeof range);
-  std::string name = std::string("--") + row.name;
-  std::string help = row.what + std::string(row.field.kind == SettingKind::choice ? ": " : ", ") + range;
-  if (*row.note) help += std::string("; ") + row.note;
-  if (row.field.kind == SettingKind::count) return command.add_option(name, option->count, help);
-  if (row.field.kind == SettingKind::real) return command.add_option(name, option->real, help);
-  return command.add_option(name, option->choice, help);
+std::string all_device_names() {
+  std::string text;
+  for (const std::string& name : device_names()) text += (text.empty() ? "" : ", ") + name;
+  return "Devices: " + text + ".";
 }
 
-Option add_setting_option(Command command, const SettingRow& row, SettingOption* option) {
-  const Option declared = declare_setting(command, row, option);
+Option declare_setting(Command command, const SettingRow& row, SettingOption* option) {
+  const std::string name = std::string("--") + row.name;
+  if (row.field.kind == SettingKind::choice)
+    return command.add_option(name + " NAME", option->choice, row.what)
+        .one_of({row.field.names, row.field.names + row.field.name_count});
+  const LimitRow& limit = limit_of(row.field.quantity);
+  if (row.field.kind == SettingKind::count)
+    return command.add_option(name + " N", option->count, row.what).range(limit.low, limit.high);
+  return command.add_option(name + " X", option->real, row.what).range(limit.low, limit.high);
+}
+
+void add_setting_option(Command command, const SettingRow& row, SettingOption* option) {
+  Option declared = declare_setting(command, row, option)
+                        .capture_default_str()
+                        .details(row.note)
+                        .price(measured_price(std::string("--") + row.name));
   option->given = [declared] { return declared.count() > 0; };
-  return declared;
 }
 
 void add_quality(Command command, CommonOptions* o) {
-  std::string names;
-  for (const char* name : kQualityLevelNames) names += std::string(names.empty() ? "" : ", ") + name;
-  command
-      .add_option(
-          "--quality", o->quality,
-          "the dial between speed and accuracy: " + names +
-              "; of the scene's front if `pocketray accuracy` measured it, otherwise built in. `pocketray plan` "
-              "shows what each level means. The single settings below change it")
-      .default_str("medium");
+  command.chapter("Speed and accuracy");
+  command.add_option("--quality LEVEL", o->quality, "accuracy")
+      .one_of({kQualityLevelNames, kQualityLevelNames + kQualityLevelCount})
+      .default_str("medium")
+      .details(
+          "The dial between speed and accuracy. Levels are points of the scene's front if `pocketray accuracy` "
+          "measured it, and otherwise built in; "
+          "`pocketray plan SCENE` shows what each means. Single settings, given besides, change it.")
+      .price(measured_price("--quality"));
 }
 
 void add_scene(Command command, CommonOptions* o, bool required) {
-  auto scene = command.add_option("SCENE", o->scene, scene_help());
+  Option scene = command.add_option("SCENE", o->scene, scene_help());
   if (required) scene.required();
-  command.add_option("--size", o->size, "picture size, WIDTHxHEIGHT in pixels")
-      .default_str("320x240, or the emulated device's");
+  command.chapter("Picture");
+  command.add_option("--size WxH", o->size, "picture size in pixels").default_str("320x240, or the device's");
 }
 
 void add_effects(Command command, CommonOptions* o) {
-  command
-      .add_option("--effects", o->effects,
-                  "effects to simulate: auto (those the scene needs), all, or names; \"auto,-shadow\" switches one off")
-      .capture_default_str();
+  command.add_option("--effects LIST", o->effects, "effects to simulate: auto, all, or names")
+      .capture_default_str()
+      .details(
+          "auto simulates what the scene calls for; \"auto,-shadow\" leaves one out, \"shadow,texture\" has no others. "
+          "`pocketray plan SCENE` lists all.");
 }
 
 void add_threads(Command command, CommonOptions* o) {
-  command.add_option("--threads", o->threads, "tracing threads; 0: one per core").capture_default_str();
+  command.add_option("--threads N", o->threads, "threads that trace; 0: one per core")
+      .range(0, kThreadCountMax)
+      .capture_default_str();
 }
 
 void add_camera(Command command, CommonOptions* o) {
-  command.add_option("--camera", o->camera,
-                     "\"ex,ey,ez tx,ty,tz ux,uy,uz VFOV\": eye, target, up vector, vertical field of view in degrees");
-  command.add_option("--camera-index", o->camera_index, "index of the scene's camera to use, counted from 0")
+  command.chapter("Camera");
+  command.add_option("--camera CAMERA", o->camera, "\"ex,ey,ez tx,ty,tz ux,uy,uz VFOV\"")
+      .default_str("the scene's")
+      .details(
+          "Eye, target, up vector, and the vertical field of view in degrees, 0.001 … 179. Example: "
+          "\"0,1,4 0,1,0 0,1,0 40\".");
+  command.add_option("--camera-index N", o->camera_index, "which of the scene's cameras, from 0")
+      .range(0, kCameraCountMax - 1)
       .capture_default_str();
-  command.add_option(
-      "--exposure", o->exposure,
-      "stops to add to the scene's exposure, which is measured if an imported model has lights; auto: always "
-      "measured; fixed or fixed,STOPS: never, radiance 1 is white");
 }
 
-}  // namespace
-
-Option add_json_option(Command command, std::string* path) {
-  return command.add_option("--json", *path, "also write the results as JSON to FILE, or - for standard output");
+void add_exposure(Command command, CommonOptions* o) {
+  command.add_option("--exposure STOPS", o->exposure, "brightness in stops, auto or fixed")
+      .default_str("the scene's")
+      .details(
+          "-60 … 60 stops, added to the scene's exposure, which is measured for imported models with lights. auto "
+          "measures it always; fixed or fixed,STOPS never: radiance 1 is white.");
 }
 
-Option add_isa_option(Command command, std::string* isa) {
-  return command.add_option("--isa", *isa, "instruction set for tracing: baseline, avx2 or avx512")
-      .default_str("the best on this CPU");
-}
-
-Option add_server_option(Command command, std::vector<std::string>* addresses) {
-  return command.add_option("--server", *addresses, "HOST:PORT of a `pocketray serve`; repeat it for several servers")
-      .allow_extra_args(false);
-}
-
-Option add_key_option(Command command, std::string* path) {
-  return command.add_option("--key", *path,
-                            "encrypt the links and accept only peers that have the key in FILE, made by `pocketray "
-                            "keygen` and equal on both sides; its mode must be 0600");
-}
-
-void add_scene_options(Command command, CommonOptions* o, bool scene_required) {
-  add_scene(command, o, scene_required);
-  add_quality(command, o);
-  for (int i = 0; i < kSettingCount; ++i)
-    add_setting_option(command, kSettingList[i], &o->settings.options[i]).capture_default_str();
-  add_effects(command, o);
-  command.add_option("--memory", o->memory, "size of the one memory block that holds everything, e.g. 24M")
-      .default_str("64M, or the device's; less if the system has less");
-  command.add_option("--device", o->device,
-                     "use a device's memory size and, in view, its rotation and buttons: " + device_names());
-  command.add_option("--emulate", o->emulate,
-                     "run at a device's speed, with its memory, cores and screen size; names as for --device");
+void add_memory_and_devices(Command command, CommonOptions* o) {
+  command.chapter("Memory and devices");
+  command.add_option("--memory SIZE", o->memory, "size of the one memory block")
+      .default_str("64M, or the device's")
+      .details(
+          "It holds everything. Bytes, or K, M or G of them (24M, 24MB and 24MiB are equal), 64K … 64G. A system with "
+          "less free memory has "
+          "a "
+          "smaller default.");
+  command.add_option("--device NAME", o->device, "use a device's memory size and, in view, its buttons")
+      .details(all_device_names());
+  command.add_option("--emulate NAME", o->emulate, "imitate a device's speed, memory, cores and screen")
+      .details(all_device_names() + " Speeds are listed with their sources in platform/devices/README.md.");
   add_threads(command, o);
   add_isa_option(command, &o->isa);
   std::vector<std::string> accels = {"auto"};
   std::string known, automatic;
   for (const AccelInfo* info : kAccelList) {
     accels.push_back(info->name);
-    known +=
-        std::string(known.empty() ? "" : ", ") + info->name + (*info->help ? std::string(" (") + info->help + ")" : "");
+    if (*info->help) known += std::string(info->name) + ": " + info->help + ". ";
     if (info->is_automatic)
       automatic += std::string(automatic.empty() ? ", else " : ", or if that does not fit, ") + info->name;
   }
-  command
-      .add_option("--accel", o->accel,
-                  "ray-tracing accelerator: " + known + ", or auto: the one the scene was baked with" + automatic)
+  command.add_option("--accel NAME", o->accel, "accelerator")
       .one_of(accels)
-      .capture_default_str();
+      .capture_default_str()
+      .details("The structure that finds what rays hit. " + known + "auto: the one the scene was baked with" +
+               automatic + ".");
+}
+
+}  // namespace
+
+Option add_json_option(Command command, std::string* path) {
+  command.chapter("Output");
+  return command.add_option("--json FILE", *path, "also write the results as JSON; -: standard output");
+}
+
+Option add_isa_option(Command command, std::string* isa) {
+  return command.add_option("--isa NAME", *isa, "instruction set: baseline, avx2 or avx512")
+      .default_str("the CPU's best");
+}
+
+void add_scene_options(Command command, CommonOptions* o, bool scene_required) {
+  add_scene(command, o, scene_required);
+  add_exposure(command, o);
+  add_quality(command, o);
+  command.chapter("Quality settings");
+  for (int i = 0; i < kSettingCount; ++i) add_setting_option(command, kSettingList[i], &o->settings.options[i]);
+  add_effects(command, o);
   add_camera(command, o);
   add_animation_option(command, &o->animation);
+  add_memory_and_devices(command, o);
   add_reading_options(command, &o->reading);
 }
 
 void add_view_options(Command command, CommonOptions* o) {
   add_scene(command, o, true);
+  add_exposure(command, o);
   add_effects(command, o);
   add_threads(command, o);
   add_camera(command, o);
@@ -152,13 +174,15 @@ void add_view_options(Command command, CommonOptions* o) {
 
 void add_reading_options(Command command, ReadingChoice* choice) {
 #ifdef POCKETRAY_HAVE_IMPORT
-  command.add_option("--up", choice->up, "the axis that points up in a PLY, STL, OBJ or OFF model: y or z")
+  command.chapter("Models");
+  command.add_option("--up AXIS", choice->up, "axis that points up")
       .one_of({"y", "z"})
-      .default_str("z for PLY and STL, y for the others");
+      .default_str("by format")
+      .details("In PLY, STL, OBJ and OFF, which do not tell: z in PLY and STL, y in the others.");
   command.add_flag("--strict", choice->strict,
-                   "refuse a model with vertices that are not finite instead of leaving out their faces");
+                   "refuse vertices that are not finite; otherwise their faces are left out");
   command
-      .add_option("--model-root", choice->root,
+      .add_option("--model-root DIR", choice->root,
                   "folder that must contain the model and all files it refers to, even by ../")
       .default_str("the model's folder");
 #else
@@ -167,146 +191,104 @@ void add_reading_options(Command command, ReadingChoice* choice) {
 }
 
 void add_animation_option(Command command, std::string* name) {
-  command
-      .add_option("--animation", *name,
-                  "the animation to play: its name or number as listed by `plan`, all (those that drive "
-                  "different things) or none")
-      .default_str("all");
+  command.chapter("Animation");
+  command.add_option("--animation NAME", *name, "which animation plays: name, number, all or none")
+      .default_str("all")
+      .details("`pocketray plan SCENE` lists names and numbers. all plays those that drive different things.");
 }
 
 Option add_environment_option(Command command, std::string* name) {
-  return command.add_option(
-      "--environment", *name,
-      "light from all directions: an equirectangular picture (.hdr, .png, .jpg); sky or sky:ELEVATION,TURBIDITY, a "
-      "clear sky with a sun 0 … 90 degrees high (45) and haze 2 … 10 (3); studio, the default of models without light "
-      "where it matters; or none");
+  command.chapter("Light and background");
+  return command.add_option("--environment WHAT", *name, "surrounding light: FILE, sky, studio, none")
+      .default_str("the scene's")
+      .details(
+          "FILE is an equirectangular picture, .hdr, .png or .jpg. sky, or sky:ELEVATION,TURBIDITY, is a clear sky "
+          "with "
+          "a sun 0 … 90 degrees high (45) and haze 2 … 10 (3). studio lights models without light of their own, where "
+          "it matters.");
 }
 
 void add_look_options(Command command, CommonOptions* o, std::initializer_list<const char*> own_look) {
-  Option background =
-      command
-          .add_option("--background", o->background,
-                      "colour where nothing is hit: #rrggbb as displayed without exposure (quote it), or linear "
-                      "radiance as r,g,b")
-          .default_str("the scene's");
-  Option environment = add_environment_option(command, &o->environment).default_str("the scene's").excludes(background);
-  Option light =
-      command
-          .add_option("--light", o->light,
-                      "light for a scene that has none: key (a key and a fill light that follow the camera's side), "
-                      "sun (one from high above) or none (ambient light only)")
-          .one_of({"key", "sun", "none"})
-          .capture_default_str();
+  Option environment = add_environment_option(command, &o->environment);
+  Option background = command.add_option("--background COLOUR", o->background, "colour where nothing is hit")
+                          .default_str("the scene's")
+                          .details("#rrggbb as displayed without exposure (quote it), or linear radiance as r,g,b.")
+                          .excludes(environment, "the environment is the background");
+  Option light = command.add_option("--light NAME", o->light, "light for a scene that has none")
+                     .one_of({"key", "sun", "none"})
+                     .capture_default_str()
+                     .details(
+                         "key: a key and a fill light on the camera's side. sun: one from high above. none: ambient "
+                         "light only.");
   for (const char* other : own_look)
-    for (Option option : {background, environment, light}) option.excludes(command.get_option(other));
-  command
-      .add_option("--fov", o->fov,
-                  "vertical field of view in degrees, 0.001 … 179, of the scene's cameras; the automatic camera still "
-                  "frames the scene")
+    for (Option option : {background, environment, light})
+      option.excludes(command.get_option(other), "errors are known for the scene's own light only");
+  command.chapter("Camera");
+  command.add_option("--fov DEGREES", o->fov, "vertical field of view, 0.001 … 179")
       .default_str("the camera's")
-      .excludes(command.get_option("--camera"));
+      .details("For the scene's cameras; the automatic camera moves so that it still frames the scene.")
+      .excludes(command.get_option("--camera"), "--camera states its own field of view");
 #ifdef POCKETRAY_HAVE_IMPORT
-  command
-      .add_option("--focus", o->focus,
-                  "node, object or group of the model that fills the picture, seen from the same side; --orbit and "
-                  "--turntable circle it")
-      .default_str("the whole scene")
-      .excludes(command.get_option("--camera"));
+  command.add_option("--focus NAME", o->focus, "fill the picture with one part of the model")
+      .default_str("all of it")
+      .details("A node, object or group, seen from the same side; --orbit and --turntable circle it.")
+      .excludes(command.get_option("--camera"), "--camera states what it looks at");
 #endif
 }
 
 void add_coherence_options(Command command, CommonOptions* o, const char* usual) {
   o->coherence = usual;
+  command.chapter("Animation");
+  command.add_option("--coherence WHEN", o->coherence, "trace only what may have changed since the last frame")
+      .one_of({"off", "auto", "on"})
+      .capture_default_str()
+      .details("The pictures stay equal, bit for bit. auto does so if it pays off and memory allows it.");
   command
-      .add_option("--coherence", o->coherence,
-                  "trace only what may have changed since the last frame; the pictures stay the same: on, off, or "
-                  "auto, if it pays off")
-      .capture_default_str();
-  command
-      .add_option("--coherence-table", o->coherence_table,
-                  "N: rays behind mirrors and glass are kept in tables of NxN blocks of pixels; more blocks take "
-                  "more memory and save rays")
-      .capture_default_str();
+      .add_option("--coherence-table N", o->coherence_table,
+                  "blocks of pixels, NxN, for which rays behind mirrors and glass are kept")
+      .range(1, kCoherenceTableSideMax)
+      .capture_default_str()
+      .details("More blocks take more memory and save rays.");
 }
 
 void add_budget_options(Command command, BudgetOptions* o) {
+  command.chapter("Speed and accuracy");
   std::string names;
   for (const SettingRow& row : kSettingList) names += std::string(names.empty() ? "" : ", ") + row.name;
-  Option budget = command.add_option("--budget-ms", o->ms,
-                                     "frame time to aim for in milliseconds: chooses " + names +
-                                         " for the least error, adapting to measured frame times; prices are "
-                                         "saved per scene and machine (see `bench --front`)");
-  budget.check([](const std::string& text) {
-    double ms = std::strtod(text.c_str(), nullptr);
-    return ms >= kBudgetMsMin && ms <= kBudgetMsMax ? "" : "must lie in 0.001 … 10000000 milliseconds";
-  });
-  Option flip = command.add_option("--flip-max", o->flip_max,
-                                   "maximum mean ꟻLIP, as measured by `pocketray accuracy` for the scene: chooses the "
-                                   "fastest settings within it or, with --budget-ms, the best ones");
-  flip.check([](const std::string& text) {
-    const double flip_max = std::strtod(text.c_str(), nullptr);
-    return flip_max > 0 && flip_max <= 1 ? "" : "must be above 0 and at most 1";
-  });
-  for (const SettingRow& row : kSettingList)
-    for (Option* option : {&budget, &flip}) option->excludes(command.get_option(std::string("--") + row.name));
-  for (Option* option : {&budget, &flip}) option->excludes(command.get_option("--quality"));
-  command.add_option("--front", o->front, "file of settings to choose from")
-      .default_str("the scene's file in the cache");
-}
-
-void add_servers_options(Command command, ServersOptions* o) {
-  const char* group = "Render servers";
-  add_server_option(command, &o->addresses).group(group);
-  add_key_option(command, &o->key).group(group);
-  command.add_option("--share", o->device_share, "the device's share of the rows, 0 … 1, instead of the fastest")
-      .group(group);
-  command
-      .add_option("--verify", o->verify,
-                  "random pixels per frame that the device renders itself to spot-check the servers, 0 … 1024; "
-                  "default: as many as 1 % of the time allows. A server caught with a wrong pixel is dropped. N "
-                  "pixels catch one wrong row of R in a frame with a probability of at least 1 - (1 - 1/R)^N")
-      .group(group);
-  command
-      .add_flag("--near-lossless", o->near_lossless,
-                "let servers send pixels whose channels may be off by one level of their format, for about half of the "
-                "bytes; otherwise every pixel is exact")
-      .group(group);
-  command
-      .add_option(
-          "--split", o->split,
-          "how to share a frame: rows: servers render some rows, exactly as the device would; effect: the device "
-          "renders every pixel without --indirect, a server that light at fewer pixels; auto: whichever is faster, or "
-          "both: servers render whole rows, the device the others without --indirect")
-      .one_of({"rows", "effect", "auto"})
-      .default_str("rows")
-      .group(group);
-  command
-      .add_option(
-          "--light-every", o->light_every,
-          "with --split: number of frames of a moving view that use one map of a server's light, 1 … 60; 4 take a "
-          "quarter of its bytes")
-      .range(1u, kLightEveryMax)
-      .capture_default_str()
-      .group(group);
-  command.add_option("--price", o->price, "price of 10^6 bytes from a server, in any unit").group(group);
-  command.add_option("--energy-pixel", o->energy_pixel, "cost of rendering a pixel on the device, in that unit")
-      .group(group);
-  command.add_option("--energy-byte", o->energy_byte, "cost of receiving a byte on the device, in that unit")
-      .group(group);
-  command
-      .add_option("--cost-weight", o->cost_weight_ms,
-                  "milliseconds that a unit of cost is worth: minimises time plus weighted cost")
-      .group(group);
-  command.add_option("--cost-cap", o->cost_cap, "largest cost per frame: takes the fastest split within it")
-      .group(group);
+  Option budget = command.add_option("--budget-ms MS", o->ms, "best settings that keep a frame within MS milliseconds")
+                      .range(kBudgetMsMin, kBudgetMsMax)
+                      .details("Chooses " + names +
+                               ", and follows measured frame times. Prices are kept per scene and machine; see "
+                               "`pocketray bench --front`.")
+                      .price(measured_price("--budget-ms"));
+  Option flip =
+      command.add_option("--flip-max X", o->flip_max, "the fastest settings with a mean ꟻLIP of at most X")
+          .range(0, 1)
+          .details(
+              "Above 0. Errors are those that `pocketray accuracy` measured for the scene: .01 is hard to see, "
+              ".05 seen at once, .2 another picture. With --budget-ms, the best of these in that time.")
+          .check([](const std::string& text) {
+            return std::strtod(text.c_str(), nullptr) > 0 ? "" : "must be above 0 and at most 1";
+          });
+  const std::pair<Option, const char*> choosers[] = {{budget, "--budget-ms"}, {flip, "--flip-max"}};
+  for (auto [option, name] : choosers) {
+    const std::string because = std::string(name) + " chooses the settings";
+    for (const SettingRow& row : kSettingList)
+      option.excludes(command.get_option(std::string("--") + row.name), because);
+    option.excludes(command.get_option("--quality"), because);
+  }
+  command.add_option("--front FILE", o->front, "file of the settings to choose from")
+      .default_str("the scene's, in the cache");
 }
 
 void add_side_by_side_option(Command command, SideBySideOptions* o) {
-  command
-      .add_option("--side-by-side", o->reference,
-                  "show the reference on the right half: model (the same lighting model, converged) or physical (full "
-                  "light transport). It is refined while nothing moves; animation is paused while it is")
-      .one_of({"model", "physical"});
+  command.chapter("Viewer");
+  command.add_option("--side-by-side REFERENCE", o->reference, "show the reference on the right half")
+      .one_of({"model", "physical"})
+      .details(
+          "model: the lighting model, converged. physical: full light transport. It is refined while nothing moves; "
+          "the "
+          "animation stands still meanwhile.");
 }
 
 }  // namespace pocketray

@@ -66,9 +66,11 @@ double frame_ms(const Renderer& renderer, const LevelMeaning& level) {
 }
 
 void print_levels(const Renderer& renderer, const Levels& levels) {
-  std::printf("--quality, %s\n", levels[0].is_measured
-                                     ? "as `pocketray accuracy` measured this scene (ꟻLIP to full light transport)"
-                                     : "built in; `pocketray accuracy` measures what this scene gains from each");
+  std::printf("--quality, %s\n",
+              !levels[0].is_measured ? "built in; `pocketray accuracy` measures what this scene gains from each"
+              : levels[0].is_priced  ? "as `pocketray accuracy` measured this scene (ꟻLIP to full light transport)"
+                                     : "as `pocketray accuracy` measured this scene, with times of another machine or "
+                                       "number of threads; `bench --front` measures those of this one");
   for (int i = 0; i < kQualityLevelCount; ++i) {
     char change[kFrontLineMax];
     describe_change(Quality(), levels[i].candidate, change, sizeof change);
@@ -89,6 +91,7 @@ Json levels_json(const Renderer& renderer, const Levels& levels) {
     list.push_back({{"level", kQualityLevelNames[i]},
                     {"settings", settings},
                     {"measured", is_measured},
+                    {"priced_here", levels[i].is_priced},
                     {"ms", is_measured ? Json(frame_ms(renderer, levels[i])) : Json()},
                     {"flip", is_measured ? Json(levels[i].candidate.flip) : Json()}});
   }
@@ -184,13 +187,17 @@ int run(const CommonOptions& options, bool prices) {
 void add_plan_command(Command program, int* exit_status) {
   auto options = std::make_shared<CommonOptions>();
   auto prices = std::make_shared<bool>(false);
-  Command command = program.add_subcommand("plan", "show which effects a scene needs, why, and its memory map");
+  Command command = program.add_subcommand("plan", "show which effects a scene needs, why, and its memory");
   add_scene_options(command, options.get());
   add_look_options(command, options.get());
   add_coherence_options(command, options.get());
+  command.chapter("Output");
+  command.add_flag("--prices", *prices, "also print what each effect and --radiosity cost here");
   add_json_option(command, &options->json);
-  command.add_flag("--prices", *prices,
-                   "also render it and print the cost of each effect and of bake --radiosity on this machine");
+  command.everyday("Picture", {"--size", "--quality", "--effects", "--environment"});
+  command.everyday("Device", {"--memory", "--device", "--accel"});
+  command.everyday("Output", {"--prices", "--json"});
+  command.example("pocketray plan seesaw --device miyoo-mini");
   command.callback([=] { *exit_status = run(*options, *prices); });
 }
 

@@ -230,60 +230,77 @@ Status read_render_options(RenderOptions* o, RenderRequest* request) {
   return check_limit(Quantity::seconds, o->seconds, "--time");
 }
 
-void add_render_options(Command command, RenderOptions* o) {
-  add_scene_options(command, &o->common);
-  if (o->parts.servers) add_servers_options(command, &o->servers);
-  add_budget_options(command, &o->budget);
-  add_look_options(command, &o->common, {"--budget-ms", "--flip-max"});
-  add_coherence_options(command, &o->common);
-  command
-      .add_option("-o,--output", o->output,
-                  "picture to write: .png, .jpg, .ppm, .pfm or .exr (linear radiance) or .raw (framebuffer bytes). A "
-                  "sequence gives "
-                  "numbered pictures, out-0000.png …, or one animation: .gif, .apng (all colours) or .mp4 (by ffmpeg). "
-                  "-: standard output")
+namespace {
+
+void add_sequence_options(Command command, RenderOptions* o) {
+  command.chapter("Animation");
+  Option frames = command.add_option("--frames A:B", o->frames, "render frames A to B")
+                      .details("Under mpirun, in a build with MPI, ranks share them.");
+  command.add_option("--time SECONDS", o->seconds, "the animation's time, for a single frame")
+      .range(-kSecondsMax, kSecondsMax)
       .capture_default_str();
-  command.add_option("--format", o->format, "format for -o -: png, jpg, ppm, pfm, exr, raw, gif, apng or mp4")
-      .one_of({"png", "jpg", "ppm", "pfm", "exr", "raw", "gif", "apng", "mp4"})
-      .default_str("png");
-  Option frames =
-      command.add_option("--frames", o->frames,
-                         "render a sequence, FIRST:LAST; under mpirun, in a build with MPI, ranks share its frames");
-  command.add_option("--time", o->seconds, "animation time in seconds, for a single frame").capture_default_str();
-  Option orbit = command.add_option("--orbit", o->orbit_degrees, "degrees that the camera orbits its target per frame")
+  Option orbit = command.add_option("--orbit DEGREES", o->orbit_degrees, "orbit the camera by DEGREES per frame")
+                     .range(-360, 360)
                      .capture_default_str();
-  command
-      .add_option("--turntable", o->turntable,
-                  "render a sequence of N frames once around the camera's target; time stands still (--time)")
-      .range(2u, kTurntableMax)
-      .excludes(frames)
-      .excludes(orbit);
-  command
-      .add_option("--fps", o->frames_per_second,
-                  "frames per second of a sequence, in the scene's time and in animations, 0.1 … 240")
+  command.add_option("--turntable N", o->turntable, "render N frames on a circle around the target")
+      .range(2, kTurntableMax)
+      .details("The scene's time stands still, at --time.")
+      .excludes(frames, "a turntable has frames of its own")
+      .excludes(orbit, "a turntable sets the angle between frames");
+  command.add_option("--fps N", o->frames_per_second, "frames per second of the scene's time and the file")
       .range(kAnimationRateMin, kAnimationRateMax)
       .default_str("the scene's");
-  command.add_flag("--resume", o->resume,
-                   "skip frames finished by an earlier run with the same scene, version and options; "
-                   "OUT.resume lists them");
-  command.add_option("--crop", o->crop,
-                     "X,Y,WxH: trace and write only these pixels of the picture, counted from the top left");
-  command
-      .add_option(
-          "--aov", o->aov,
-          "write depth, normal, triangle, position or cost in false colours instead of the picture; .pfm and .exr have "
-          "the values")
-      .capture_default_str();
-  command.add_flag("--no-legend", o->no_legend, "leave out the legend at the bottom left of --aov");
-  command.add_option("--rotate", o->rotation, "rotate .raw pictures clockwise: 0, 90, 180 or 270")
+  command.add_flag("--resume", o->resume, "skip frames that an earlier run has finished")
+      .details("It must have had the same scene, version and options; OUT.resume lists its frames.");
+}
+
+void add_output_options(Command command, RenderOptions* o) {
+  command.chapter("Output");
+  command.add_option("-o,--output FILE", o->output, "file to write: .png, .jpg, .gif, .mp4, …")
+      .capture_default_str()
+      .details(
+          "A picture: .png, .jpg, .ppm, .pfm or .exr (linear radiance), or .raw (a framebuffer's bytes). Of several "
+          "frames, numbered pictures, out-0000.png …, or one animation: .gif, .apng (all colours) or .mp4 (by ffmpeg). "
+          "- is standard output.");
+  command.add_option("--format NAME", o->format, "format for -o -")
+      .one_of({"png", "jpg", "ppm", "pfm", "exr", "raw", "gif", "apng", "mp4"})
+      .default_str("png");
+  command.add_option("--crop X,Y,WxH", o->crop, "trace and write only these pixels")
+      .default_str("all")
+      .details("X and Y count from the top left.");
+  command.add_option("--aov NAME", o->aov, "show this instead of the picture, in false colours")
+      .one_of({"none", "depth", "normal", "triangle", "position", "cost"})
+      .capture_default_str()
+      .details(".pfm and .exr have the values.");
+  command.add_flag("--no-legend", o->no_legend, "leave out the legend of --aov");
+  command.add_option("--rotate DEGREES", o->rotation, "rotate .raw pictures clockwise")
+      .one_of({"0", "90", "180", "270"})
       .capture_default_str();
   command.add_flag("--dither", o->dither, "apply ordered dithering to .raw pictures");
-  command
-      .add_option("--raw-format", o->raw_format,
-                  "pixel format of .raw: rgb565, bgr565, xrgb8888, xbgr8888, rgb888, bgr888")
+  command.add_option("--raw-format NAME", o->raw_format, "pixel format of .raw pictures")
+      .one_of({"rgb565", "bgr565", "xrgb8888", "xbgr8888", "rgb888", "bgr888"})
       .capture_default_str();
-  command.add_flag("--plan", o->plan, "also print the effect plan and the memory map");
+  command.add_flag("--plan", o->plan, "also print the effects and the memory map");
   add_json_option(command, &o->common.json);
+}
+
+}  // namespace
+
+void add_render_options(Command command, RenderOptions* o) {
+  add_scene_options(command, &o->common);
+  add_budget_options(command, &o->budget);
+  add_look_options(command, &o->common, {"--budget-ms", "--flip-max"});
+  add_sequence_options(command, o);
+  add_coherence_options(command, &o->common);
+  if (o->parts.servers) add_servers_options(command, &o->servers);
+  add_output_options(command, o);
+  command.everyday("Picture", {"--output", "--size", "--quality", "--exposure"});
+  command.everyday("View", {"--camera", "--focus"});
+  command.everyday("Light", {"--environment", "--background"});
+  command.everyday("Animation", {"--frames", "--turntable"});
+  command.everyday("Speed", {"--budget-ms", "--server"});
+  command.example("pocketray render cornell -o cornell.png");
+  command.example("pocketray render seesaw --frames 0:99 -o seesaw.gif");
 }
 
 }  // namespace pocketray

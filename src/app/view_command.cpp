@@ -11,6 +11,7 @@
 #include "platform/standard_streams.h"
 #include "session/interrupt.h"
 #include "session/output.h"
+#include "session/quality_dial.h"
 #include "session/report.h"
 #include "session/servers.h"
 #include "viewer/picker.h"
@@ -25,6 +26,7 @@ struct Loading {
   std::unique_ptr<OpenScene> opened = std::make_unique<OpenScene>();
   Status status;
   OpenFront front;
+  QualityDial dial;
   std::atomic<bool> done{false};
   std::thread thread;
 
@@ -32,7 +34,8 @@ struct Loading {
       : servers(viewer->servers), thread([this, &options, &budget, viewer] {
           status = chooses_settings(budget)
                        ? open_scene_with_front(options, front_source(budget, false), viewer_bytes, opened.get(), &front)
-                       : open_scene_with(servers, options, viewer_bytes, opened.get());
+                   : servers ? open_scene_with(servers, options, viewer_bytes, opened.get())
+                             : open_scene_with_dial(options, viewer_bytes, opened.get(), &dial);
           if (status.ok && servers)
             status = servers->backend->start(servers, &opened->renderer, viewer->format.bits_per_pixel == 16,
                                              viewer->options.dither);
@@ -64,15 +67,16 @@ struct ViewCommand {
 };
 
 // Shows the loaded scene until the user quits or a reload is due.
-Status show(const ViewCommand& o, const Loading& loading, Viewer* viewer, bool* again) {
-  Renderer* renderer = &loading.opened->renderer;
-  print_notes(*loading.opened);
-  print_notes(loading.front);
+Status show(const ViewCommand& o, Loading* loading, Viewer* viewer, bool* again) {
+  Renderer* renderer = &loading->opened->renderer;
+  print_notes(*loading->opened);
+  print_notes(loading->front);
   Budget budget;
-  if (chooses_settings(o.budget)) start_budget(o.budget, loading.front, *renderer, 4096, &budget);
+  if (chooses_settings(o.budget)) start_budget(o.budget, loading->front, *renderer, 4096, &budget);
   viewer->budget = chooses_settings(o.budget) ? &budget : nullptr;
-  viewer->focus = loading.opened->source.focus;
-  viewer->material_names = loading.opened->source.material_names;
+  viewer->dial = viewer->budget || viewer->servers ? nullptr : &loading->dial;
+  viewer->focus = loading->opened->source.focus;
+  viewer->material_names = loading->opened->source.material_names;
   if (!o.side_by_side.reference.empty())
     viewer->side_by_side =
         o.parts.side_by_side->open(o.side_by_side, *renderer, viewer->format.bits_per_pixel, o.view.dither);
@@ -86,6 +90,7 @@ Status show(const ViewCommand& o, const Loading& loading, Viewer* viewer, bool* 
     viewer->side_by_side->backend->close(viewer->side_by_side);
   }
   viewer->budget = nullptr;
+  viewer->dial = nullptr;
   viewer->side_by_side = nullptr;
   return status;
 }
@@ -118,7 +123,7 @@ bool load_and_show(const ViewCommand& o, const std::string& news, Viewer* viewer
   *status = loading.status;
   if (status->ok) *status = check_log(o, *loading.opened);
   if (status->ok && !news.empty()) tell(viewer, news.c_str());
-  if (status->ok) *status = show(o, loading, viewer, again);
+  if (status->ok) *status = show(o, &loading, viewer, again);
   return true;
 }
 
@@ -229,6 +234,29 @@ int run(ViewCommand o) {
   return interrupted ? kExitInterrupted : kExitDone;
 }
 
+void add_screen_options(Command command, ViewCommand* o) {
+  command.chapter("Viewer");
+  command.add_option("--screen NAME", o->view.backend, "where to show it")
+      .one_of({"auto", "sdl2", "linux", "null"})
+      .capture_default_str()
+      .details(
+          "sdl2 is a window, linux the framebuffer, null nothing, for tests; auto takes a window or the framebuffer, "
+          "whichever there is.");
+  command.add_option("--framebuffer FILE", o->view.device, "the framebuffer's device file").default_str("the system's");
+  command.add_option("--rotate DEGREES", o->view.rotation, "rotation, clockwise")
+      .one_of({"0", "90", "180", "270"})
+      .default_str("the device's");
+  command.add_option("--scale N", o->view.scale, "screen pixels per picture pixel; 0: the most that fit")
+      .range(0, 64)
+      .capture_default_str();
+  command.add_flag("--dither", o->view.dither, "apply ordered dithering on 16-bit screens");
+  command.add_flag("--no-hud", o->no_hud, "start without the overlay");
+  command.add_option("--screenshots DIR", o->view.screenshot_folder, "folder for screenshots; created if missing")
+      .capture_default_str();
+  command.add_option("--log FILE", o->log, "append all messages to this file instead of printing them");
+  command.add_option("--frames N", o->view.frame_count, "exit after N frames; 0: run until quit").capture_default_str();
+}
+
 }  // namespace
 
 void add_view_command(Command program, const OptionalParts& parts, int* exit_status) {
@@ -238,45 +266,36 @@ void add_view_command(Command program, const OptionalParts& parts, int* exit_sta
   o->servers.coarse_first = true;
   Command command = program.add_subcommand("view", "show a scene in a window or on a device's framebuffer");
   add_scene_options(command, &o->common, false);
-  command.add_option("--scenes", o->scenes, "without SCENE: folder of .pray files to choose from")
+  command.chapter("Picture");
+  command.add_option("--scenes DIR", o->scenes, "without SCENE: folder of .pray files to choose from")
       .capture_default_str();
-  if (parts.servers) add_servers_options(command, &o->servers);
   add_budget_options(command, &o->budget);
   add_look_options(command, &o->common, {"--budget-ms", "--flip-max"});
   add_coherence_options(command, &o->common);
+  if (parts.servers) add_servers_options(command, &o->servers);
+  add_screen_options(command, o.get());
   if (parts.side_by_side) add_side_by_side_option(command, &o->side_by_side);
-  command
-      .add_option("--screen", o->view.backend,
-                  "sdl2 (window), linux (framebuffer), null (none, for tests) or auto (a window or the framebuffer, "
-                  "whichever is available)")
-      .capture_default_str();
-  command.add_option("--framebuffer", o->view.device, "the framebuffer's device file, if not the default");
-  command.add_option("--rotate", o->view.rotation, "rotate the picture clockwise: 0, 90, 180 or 270")
-      .default_str("0, or the device's");
-  command.add_option("--scale", o->view.scale, "screen pixels per picture pixel, each way; 0: the most that fit")
-      .range(0, 64)
-      .capture_default_str();
-  command.add_flag("--no-hud", o->no_hud, "start without the overlay");
-  command.add_option("--log", o->log, "append all messages to this file instead of printing them");
-  command.add_flag("--dither", o->view.dither, "apply ordered dithering on 16-bit screens");
-  command.add_option("--frames", o->view.frame_count, "exit after N frames; 0: run until quit").capture_default_str();
-  command.add_option("--screenshots", o->view.screenshot_folder, "folder for screenshots; created if missing")
-      .capture_default_str();
-  command.footer(std::string("Keys, with a device's buttons in brackets:\n"
+  command.everyday("Picture", {"--size", "--quality", "--budget-ms"});
+  command.everyday("View", {"--camera", "--focus", "--animation"});
+  command.everyday("Light", {"--environment", "--background"});
+  command.everyday("Screen", {"--scale", "--rotate", "--emulate"});
+  command.everyday("Servers", {"--server"});
+  command.footer(std::string("Keys, with a device's buttons in brackets\n"
                              "  arrows [pad]          turn the camera\n"
                              "  X, Z [A, B]           move nearer, farther\n"
                              "  Q, W [L, R]           move left, right\n"
                              "  right shift [select]  switch between orbit and fly\n"
-                             "  return [start]        restore the scene's camera, and let --budget-ms choose again\n"
-                             "  page up, page down    step through the settings of --budget-ms\n"
+                             "  return [start]        the scene's camera, and what --budget-ms chooses\n"
+                             "  +, - [select + pad]   quality, or settings of --budget-ms\n"
                              "  S [X]                 pause\n"
-                             "  F1, A [Y]             toggle the overlay\n") +
-                 (parts.side_by_side ? "  V                     toggle the reference of --side-by-side\n" : "") +
+                             "  F1, A [Y]             show what a frame costs\n") +
+                 (parts.side_by_side ? "  V                     show or hide the reference of --side-by-side\n" : "") +
                  "  N                     play the next animation, or none\n"
                  "  T                     dim the pixels that the last frame did not retrace\n"
                  "  F12                   save a screenshot\n"
                  "  F5                    reload the scene\n"
                  "  Esc [start + select]  quit");
+  command.example("pocketray view seesaw --emulate pi-zero");
   command.callback([=] { *exit_status = run(*o); });
 }
 

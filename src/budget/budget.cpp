@@ -62,12 +62,11 @@ Status load_front(const Renderer& renderer, const FrontSource& source, const Con
       return failure("--front is %.300s: no such folder; create it, or name another", f->path.c_str());
     f->file = there ? f->front : builtin_front(renderer.effects.mask);
   } else if (identity) {
-    f->path = front_path(f->scene, *identity, machine_name(renderer.pace.device, renderer.settings.threads));
+    const CachedFront cached =
+        read_cached_front(f->scene, *identity, machine_name(renderer.pace.device, renderer.settings.threads));
+    f->front = cached.front, f->measured = cached.prices, f->path = cached.prices_path;
     if (f->path.empty()) f->notes.push_back("prices are not saved: set XDG_CACHE_HOME or HOME to a folder");
-    Status status = read_front(front_path(f->scene, *identity), &f->front, &there);
-    if (!status.ok) f->notes.push_back(std::string(status.message) + "; ignoring it");
-    status = read_front(f->path, &f->measured, &there);
-    if (!status.ok) f->notes.push_back(std::string(status.message) + "; measuring prices again");
+    f->notes.insert(f->notes.end(), cached.notes.begin(), cached.notes.end());
   }
   f->is_guess = f->front.count == 0;
   if (f->is_guess) f->front = builtin_front(renderer.effects.mask);
@@ -116,13 +115,6 @@ Status plan_front(Renderer* renderer, const SceneStorage& storage, const OutputN
     f->notes.push_back(std::to_string(all - f->front.count) + " of " + std::to_string(all) +
                        " candidates of the front do not fit in memory: raise --memory to use them");
   return success();
-}
-
-// Drops the errors, which the scene's front holds, so that no candidate is dominated and every price is saved.
-Front prices_alone(Front front) {
-  for (std::uint32_t i = 0; i < front.count; ++i)
-    front.candidates[i].flip = front.candidates[i].flip888 = kErrorUnknown;
-  return front;
 }
 
 constexpr std::size_t kBoundsMax = 64;

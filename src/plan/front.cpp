@@ -106,6 +106,13 @@ bool adopt_prices(Front* front, const Front& measured) {
   return true;
 }
 
+Front prices_alone(const Front& front) {
+  Front prices = front;
+  for (std::uint32_t i = 0; i < prices.count; ++i)
+    prices.candidates[i].flip = prices.candidates[i].flip888 = kErrorUnknown;
+  return prices;
+}
+
 bool lacks_indirect_light(EffectMask effects) {
   constexpr EffectMask kLights =
       bit(Effect::point_light) | bit(Effect::spot_light) | bit(Effect::directional_light) | bit(Effect::area_light);

@@ -55,6 +55,9 @@ void sort_front(Front* front);
 // nothing if the fronts have no candidate in common.
 bool adopt_prices(Front* front, const Front& measured);
 
+// Drops the errors, which the scene's front holds, so that no candidate is dominated and every price is kept.
+Front prices_alone(const Front& front);
+
 // True if light from other surfaces is a constant in a plan with these effects, though the scene has lights that cause
 // it: instant radiosity is nearer to the truth.
 bool lacks_indirect_light(EffectMask effects);

@@ -5,6 +5,7 @@
 
 #include "base/check.h"
 #include "base/limit_list.h"
+#include "base/nearest_word.h"
 #include "effect/effect_list.h"
 #include "effect/setting_list.h"
 #include "plan/effects/rule.h"
@@ -49,6 +50,21 @@ EffectPlan plan_effects(const Scene& scene, const Settings& settings) {
   return plan;
 }
 
+namespace {
+
+Status unknown_effect(const char* name, std::size_t name_count, bool minus) {
+  NearestWord nearest(name, name_count);
+  if (!minus)
+    for (const char* word : {"auto", "all"}) nearest.offer(word);
+  for (const EffectRow& row : kEffectList) nearest.offer(row.name);
+  const int shown = static_cast<int>(name_count < 60 ? name_count : 60);
+  if (nearest.name())
+    return failure("--effects: there is no effect '%.*s', did you mean '%s'?", shown, name, nearest.name());
+  return failure("--effects: there is no effect '%.*s'; `pocketray plan SCENE` lists the effects", shown, name);
+}
+
+}  // namespace
+
 Status parse_effects(const char* text, Settings* settings) {
   CHECK(text != nullptr && settings != nullptr);
   settings->forced_on = settings->forced_off = 0;
@@ -70,9 +86,7 @@ Status parse_effects(const char* text, Settings* settings) {
     } else {
       for (const EffectRow& row : kEffectList)
         if (is(row.name)) mask = bit(row.effect);
-      if (!mask)
-        return failure("--effects: unknown effect '%.*s'; `pocketray plan SCENE` lists the effects",
-                       static_cast<int>(name_count), name);
+      if (!mask) return unknown_effect(name, name_count, minus);
     }
     if (minus) {
       settings->forced_off |= mask;

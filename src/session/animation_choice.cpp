@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "base/check.h"
+#include "base/nearest_word.h"
 #include "session/note.h"
 #include "session/report.h"
 
@@ -62,6 +63,13 @@ Status find_animation(const Scene& scene, const std::string& asked, std::uint32_
   std::uint32_t number;
   if (read_number(asked, &number) && number < list.size()) return *index = list[number], success();
   if (list.empty()) return failure("--animation is '%.60s': the scene has no animation; drop it", asked.c_str());
+  std::vector<std::string> names = {kAllAnimations, kNoAnimation};
+  for (std::uint32_t i : list) names.push_back(name_of(scene, i));
+  NearestWord nearest(asked.c_str());
+  for (const std::string& name : names) nearest.offer(name.c_str());
+  const bool is_word = asked.find_first_not_of("0123456789 +-.") != std::string::npos;
+  if (is_word && nearest.name())
+    return failure("--animation is '%.60s', did you mean '%.60s'?", asked.c_str(), shown(nearest.name()).c_str());
   return failure("--animation is '%.60s': it must be all, none, or a name or number of %.300s", asked.c_str(),
                  all_names(scene).c_str());
 }

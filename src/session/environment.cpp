@@ -3,7 +3,9 @@
 #include <cstring>
 
 #include "base/check.h"
+#include "base/nearest_word.h"
 #include "plan/plan_scene.h"
+#include "platform/file.h"
 #include "session/scene_options.h"
 #ifdef POCKETRAY_HAVE_IMPORT
 #include "session/environment_import.h"
@@ -12,13 +14,28 @@
 namespace pocketray {
 
 #ifdef POCKETRAY_HAVE_IMPORT
+namespace {
+
+Status read_named_environment(const std::string& name, ImportedEnvironment* read) {
+  NearestWord nearest(name.c_str());
+  for (const char* word : {"sky", kStudio, kNoEnvironment}) nearest.offer(word);
+  const bool is_word = name.find('.') == std::string::npos && platform::file_stamp(name.c_str()) == 0;
+  if (is_word && nearest.name() && name != nearest.name())
+    return failure("--environment is '%.60s', did you mean '%s'?", name.c_str(), nearest.name());
+  const Status status = read_environment(name, read);
+  return status.ok || std::strstr(status.message, "--environment") ? status
+                                                                   : failure("--environment: %.480s", status.message);
+}
+
+}  // namespace
+
 Status set_environment(const std::string& name, Scene* scene, EnvironmentMemory* memory) {
   CHECK(scene != nullptr && memory != nullptr);
   if (!scene->radiosity_info.empty())
     return failure("the scene stores radiosity, solved for other surroundings: bake it again with --environment");
   const bool wants_lights = scene->info.default_lights != 0 || !has_light(*scene);
   ImportedEnvironment read;
-  RETURN_IF_ERROR(read_environment(name, &read));
+  RETURN_IF_ERROR(read_named_environment(name, &read));
   if (scene->lights.count + read.lights.size() > kLightCountMax)
     return failure("the scene has %u lights, with the environment's %zu they are more than %u: use fewer",
                    scene->lights.count, read.lights.size(), kLightCountMax);

@@ -41,6 +41,17 @@ Status read_front(const std::string& path, Front* front, bool* there) {
   return status.ok ? status : failure("%.200s: %.280s", path.c_str(), status.message);
 }
 
+CachedFront read_cached_front(const std::string& scene, const ContentHash& identity, const std::string& machine) {
+  CachedFront cached;
+  bool there;
+  cached.front_path = front_path(scene, identity), cached.prices_path = front_path(scene, identity, machine);
+  Status status = read_front(cached.front_path, &cached.front, &there);
+  if (!status.ok) cached.notes.push_back(std::string(status.message) + "; ignoring it");
+  status = read_front(cached.prices_path, &cached.prices, &there);
+  if (!status.ok) cached.notes.push_back(std::string(status.message) + "; measuring prices again");
+  return cached;
+}
+
 Status write_front(const std::string& path, const Front& front) {
   CHECK_LE(front.count, kFrontCandidateMax);
   std::string text(kFrontTextMax, 0);

@@ -15,6 +15,7 @@ Status read_heap_scene(const std::string& name, const ModelOptions& options, Hea
     builtin->build(&arena, &result->scene);
     return success();
   }
+  if (!is_local_scene(name)) return unknown_scene(name);
 #ifdef POCKETRAY_HAVE_IMPORT
   ImportOptions import_options;
   import_options.texture_side_max = options.texture_side_max;

@@ -15,12 +15,13 @@ bool is_given(const SettingOption& option, const SettingRow& row, const Settings
 
 void find_levels(const std::string& scene, const SceneSource& source, Renderer* renderer,
                  LevelMeaning (&levels)[kQualityLevelCount]) {
-  Front front;
+  CachedFront cached;
   ContentHash identity;
-  bool there = false;
-  const bool is_measured = identify_scene(source, renderer, &identity).ok &&
-                           read_front(front_path(scene, identity), &front, &there).ok && front.count > 1 &&
-                           errors_known(front);
+  if (identify_scene(source, renderer, &identity).ok)
+    cached = read_cached_front(scene, identity, machine_name(renderer->pace.device, renderer->settings.threads));
+  Front& front = cached.front;
+  const bool is_measured = front.count > 1 && errors_known(front);
+  const bool is_priced = is_measured && adopt_prices(&front, cached.prices);
   Settings automatic = renderer->settings;
   automatic.indirect = IndirectChoice::automatic;
   const EffectMask effects = plan_effects(renderer->scene, automatic).mask;
@@ -31,8 +32,24 @@ void find_levels(const std::string& scene, const SceneSource& source, Renderer* 
     alone.candidates[alone.count++] =
         is_measured ? level_of(front, level) : candidate_of(builtin_level(level, effects));
     drop_what_scene_ignores(&alone, effects);
-    levels[i] = {alone.candidates[0], is_measured};
+    levels[i] = {alone.candidates[0], is_measured, is_priced};
   }
+}
+
+Status find_level_settings(const CommonOptions& o, const SceneSource& source, Renderer* renderer,
+                           Quality (&settings)[kQualityLevelCount]) {
+  Settings given;
+  RETURN_IF_ERROR(read_settings(o, &given));
+  LevelMeaning levels[kQualityLevelCount];
+  find_levels(o.scene, source, renderer, levels);
+  for (int level = 0; level < kQualityLevelCount; ++level) {
+    Settings all = with_candidate(given, levels[level].candidate);
+    for (int i = 0; i < kSettingCount; ++i)
+      if (is_given(o.settings.options[i], kSettingList[i], given))
+        kSettingList[i].field.set(&all, kSettingList[i].field.get(given));
+    settings[level] = all;
+  }
+  return success();
 }
 
 Status set_quality(const CommonOptions& o, const SceneSource& source, Renderer* renderer) {
@@ -40,13 +57,9 @@ Status set_quality(const CommonOptions& o, const SceneSource& source, Renderer* 
   QualityLevel level;
   if (!find_quality_level(o.quality.c_str(), &level))
     return failure("--quality is '%.60s': it must be draft, low, medium, high or best", o.quality.c_str());
-  LevelMeaning levels[kQualityLevelCount];
-  find_levels(o.scene, source, renderer, levels);
-  const Settings read = renderer->settings;
-  renderer->settings = with_candidate(read, levels[static_cast<int>(level)].candidate);
-  for (int i = 0; i < kSettingCount; ++i)
-    if (is_given(o.settings.options[i], kSettingList[i], read))
-      kSettingList[i].field.set(&renderer->settings, kSettingList[i].field.get(read));
+  Quality levels[kQualityLevelCount];
+  RETURN_IF_ERROR(find_level_settings(o, source, renderer, levels));
+  static_cast<Quality&>(renderer->settings) = levels[static_cast<int>(level)];
   return success();
 }
 

@@ -7,6 +7,7 @@
 #include "effect/effect_list.h"
 #include "session/note.h"
 #include "session/output.h"
+#include "session/terminal.h"
 
 namespace pocketray {
 
@@ -15,7 +16,10 @@ std::string shown(std::string text) {
   return text;
 }
 
-void print_note(const std::string& text) { std::fprintf(stderr, "pocketray: %s\n", shown(text).c_str()); }
+void print_note(const std::string& text) {
+  const std::string line = shown(text);
+  std::fprintf(stderr, "pocketray: %s\n", wants_ascii() ? as_ascii(line).c_str() : line.c_str());
+}
 
 int report(const Status& status) {
   if (status.ok) return kExitDone;

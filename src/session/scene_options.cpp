@@ -10,6 +10,7 @@
 #include "base/check.h"
 #include "base/color.h"
 #include "base/fmath.h"
+#include "base/nearest_word.h"
 #include "plan/plan_effects.h"
 #include "platform/memory.h"
 
@@ -131,10 +132,15 @@ Status find_device(const CommonOptions& o, const platform::Device** device) {
   if (name.empty()) return success();
   *device = platform::find_device(name.c_str());
   if (*device) return success();
+  const char* option = o.emulate.empty() ? "device" : "emulate";
   std::string names;
-  for (const platform::Device& d : platform::kDevices) names += std::string(names.empty() ? "" : ", ") + d.name;
-  return failure("--%s is '%s': it must be one of %s", o.emulate.empty() ? "device" : "emulate", name.c_str(),
-                 names.c_str());
+  NearestWord nearest(name.c_str());
+  for (const platform::Device& d : platform::kDevices) {
+    names += std::string(names.empty() ? "" : ", ") + d.name;
+    nearest.offer(d.name);
+  }
+  if (nearest.name()) return failure("--%s is '%.60s', did you mean '%s'?", option, name.c_str(), nearest.name());
+  return failure("--%s is '%.60s': it must be one of %s", option, name.c_str(), names.c_str());
 }
 
 Status picture_size(const CommonOptions& o, std::uint32_t* width, std::uint32_t* height) {
@@ -171,10 +177,13 @@ Status parse_isa(const std::string& text, Isa* isa) {
 
 Status parse_size(const std::string& text, std::uint32_t* width, std::uint32_t* height) {
   int used = 0;
-  if (text.find_first_not_of("0123456789x") != std::string::npos ||  // a sign would wrap around
-      std::sscanf(text.c_str(), "%5ux%5u%n", width, height, &used) != 2 ||
-      static_cast<std::size_t>(used) != text.size())
-    return failure("--size is '%s': write it as 320x240", text.c_str());
+  std::string plain = text;  // with one kind of cross
+  for (const char* cross : {"X", "×"})
+    if (const std::size_t at = plain.find(cross); at != std::string::npos) plain.replace(at, std::strlen(cross), "x");
+  if (plain.find_first_not_of("0123456789x") != std::string::npos ||  // a sign would wrap around
+      std::sscanf(plain.c_str(), "%5ux%5u%n", width, height, &used) != 2 ||
+      static_cast<std::size_t>(used) != plain.size())
+    return failure("--size is '%.60s': write it as 320x240, 1x1 … %ux%u", text.c_str(), kImageSideMax, kImageSideMax);
   return success();
 }
 
@@ -186,8 +195,10 @@ Status parse_bytes(const std::string& text, std::size_t* bytes, const char* opti
                 : *end == 'G' || *end == 'g' ? 1 << 30
                                              : 1;
   if (unit > 1) ++end;
+  if (unit > 1 && *end == 'i' && (end[1] == 'B' || end[1] == 'b')) ++end;  // MiB
+  if (unit > 1 && (*end == 'B' || *end == 'b')) ++end;                     // MB, of memory
   if (end == text.c_str() || *end || !(value * unit >= kMemoryBytesMin) || !(value * unit <= kMemoryBytesMax))
-    return failure("%s is '%s': write it as 24M (64K … %s)", option, text.c_str(),
+    return failure("%s is '%.60s': write it as 24M (64K … %s)", option, text.c_str(),
                    sizeof(void*) == 4 ? "2047M" : "64G");
   *bytes = static_cast<std::size_t>(value * unit);
   return success();
@@ -196,7 +207,7 @@ Status parse_bytes(const std::string& text, std::size_t* bytes, const char* opti
 Status parse_camera(const std::string& text, Camera* camera, const SceneOrigin& origin) {
   double v[10];
   if (!read_numbers(text, v, 10))
-    return failure("--camera is '%s': write it as \"ex,ey,ez tx,ty,tz ux,uy,uz VFOV\", the field of view in degrees",
+    return failure("--camera is '%.60s': write it as \"ex,ey,ez tx,ty,tz ux,uy,uz VFOV\", the field of view in degrees",
                    text.c_str());
   for (int i = 0; i < 9; ++i) RETURN_IF_ERROR(check_limit(Quantity::coordinate, v[i], "a coordinate of --camera"));
   *camera = Camera();
@@ -255,7 +266,8 @@ Status parse_exposure(const std::string& text, ExposureChoice* choice, float* fa
   float stops = 0;
   if (*choice != ExposureChoice::measured && !given.empty() &&
       (!read_numbers(given, &stops, 1) || !(std::fabs(stops) <= kExposureStopsMax)))
-    return failure("--exposure is '%s': write stops as 1.5 or -2, -60 … 60, auto, fixed, or fixed,STOPS", text.c_str());
+    return failure("--exposure is '%.60s': write stops as 1.5 or -2, -60 … 60, auto, fixed, or fixed,STOPS",
+                   text.c_str());
   *factor = static_cast<float>(det_exp(static_cast<double>(stops) * 0.693147180559945309));
   return success();
 }

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "base/check.h"
+#include "base/nearest_word.h"
 #include "plan/plan_scene.h"
 #include "platform/file.h"
 #include "platform/memory.h"
@@ -170,18 +171,26 @@ bool is_local_scene(const std::string& name) {
   return find_builtin(name.c_str()) || platform::file_stamp(name.c_str()) != 0;
 }
 
+Status unknown_scene(const std::string& name) {
+  std::string names;
+  NearestWord nearest(name.c_str());
+  int count;
+  const BuiltinScene* list = builtin_list(&count);
+  for (int i = 0; i < count; ++i) {
+    names += std::string(i ? ", " : "") + list[i].name;
+    nearest.offer(list[i].name);
+  }
+  if (nearest.name())
+    return failure("there is no scene or file %.300s, did you mean '%s'?", name.c_str(), nearest.name());
+  return failure("%.300s is neither a file nor a built-in scene (%s): check the name", name.c_str(), names.c_str());
+}
+
 Status load_scene(const std::string& name, Renderer* renderer, SceneSource* source, SceneStorage* storage) {
   CHECK(renderer != nullptr && source != nullptr && storage != nullptr);
   *storage = SceneStorage();
   if (const BuiltinScene* builtin = find_builtin(name.c_str()))
     return load_builtin(*builtin, renderer, source, storage);
-  if (!is_local_scene(name)) {
-    std::string names;
-    int count;
-    const BuiltinScene* list = builtin_list(&count);
-    for (int i = 0; i < count; ++i) names += std::string(i ? ", " : "") + list[i].name;
-    return failure("%.300s is neither a file nor a built-in scene (%s): check the name", name.c_str(), names.c_str());
-  }
+  if (!is_local_scene(name)) return unknown_scene(name);
   if (is_baked_name(name)) return load_baked(name, renderer, source, storage);
 #ifdef POCKETRAY_HAVE_IMPORT
   return load_imported(name, renderer, source, storage);

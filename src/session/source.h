@@ -46,6 +46,8 @@ Status import_model(const std::string& name, const ImportOptions& options, Impor
 
 // Returns the error for a scene that needs more than `limit` bytes; stores the memory it needs in *source.
 Status scene_too_large(const std::string& name, std::uint64_t need, std::size_t limit, SceneSource* source);
+// Returns the error for a name that is neither a built-in scene nor a file.
+Status unknown_scene(const std::string& name);
 // True if `name` is a built-in scene or a file.
 bool is_local_scene(const std::string& name);
 

@@ -96,6 +96,7 @@ Status check_team_command(const Team& team, const char* word, bool* is_needed) {
     if (word && std::strcmp(word, shared) == 0) return success();
   *is_needed = leads(team);
   if (!word || word[0] == '-') return success();  // help, or an error
+  if (std::strcmp(word, "help") == 0 || std::strcmp(word, "version") == 0) return success();
   return failure(
       "`%.40s` does not run on several ranks, only reference, accuracy, render and serve do: start it without mpirun",
       word);

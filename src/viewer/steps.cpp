@@ -151,13 +151,6 @@ Status refine(Viewer* viewer, Renderer* renderer, ViewerLoop* loop) {
   return success();
 }
 
-// Returns to the former quality for a new picture.
-Status end_refining(Renderer* renderer, ViewerLoop* loop) {
-  const bool refines = loop->refines;
-  loop->refines = loop->exact = false;
-  return refines ? set_quality(renderer, loop->quality) : success();
-}
-
 // Marks the rows from the first to the last that the frame has traced for display.
 void mark_changed_rows(const Renderer& renderer, Progressive* progressive) {
   const Coherence& c = renderer.history.coherence;
@@ -246,10 +239,10 @@ constexpr std::uint32_t kSteadyFrames = 16, kStillFramesMax = 100;
 // Renders whole frames within a budget and shows each when complete.
 Status step_budgeted(Viewer* viewer, Renderer* renderer, ViewerLoop* loop) {
   Budget* budget = viewer->budget;
-  if (viewer->front_home || viewer->front_steps != 0) {
-    move_along_front(budget, viewer->front_home ? 0 : viewer->front_steps);
+  if (viewer->front_home || viewer->quality_steps != 0) {
+    move_along_front(budget, viewer->front_home ? 0 : viewer->quality_steps);
     viewer->front_home = false;
-    viewer->front_steps = 0;
+    viewer->quality_steps = 0;
     loop->passed = true;
   }
   if (loop->moved || loop->passed) loop->still_frames = loop->steady_frames = 0;
@@ -350,6 +343,12 @@ void pack_picture(const Viewer& viewer, const Renderer& renderer, const Vec3* ra
   MergedPicture merged = viewer.servers->backend->picture(*viewer.servers);
   repack_rows(merged.format, merged.pixels, merged.line_bytes, viewer.width, viewer.height, row_begin, row_end,
               viewer.format, viewer.rotation, page.pixels, page.line_bytes);
+}
+
+Status end_refining(Renderer* renderer, ViewerLoop* loop) {
+  const bool refines = loop->refines;
+  loop->refines = loop->exact = false;
+  return refines ? set_quality(renderer, loop->quality) : success();
 }
 
 bool takes_memory(const platform::Backend& screen) { return std::strcmp(screen.name, "sdl2") == 0; }

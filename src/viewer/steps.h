@@ -51,6 +51,9 @@ inline std::uint32_t note_now(const Viewer& viewer) {
 void pack_picture(const Viewer& viewer, const Renderer& renderer, const Vec3* radiance, int row_begin, int row_end,
                   const platform::Page& page);
 
+// Returns to the former quality for a new picture, if one is being refined.
+Status end_refining(Renderer* renderer, ViewerLoop* loop);
+
 // One step: a slice of a refined or split picture, a whole one within a budget, a slice of the reference, or a short
 // sleep. Uses the loop's camera and time.
 Status step_viewer(Viewer* viewer, Renderer* renderer, ViewerLoop* loop);

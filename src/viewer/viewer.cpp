@@ -41,7 +41,9 @@ void take_events(Viewer* viewer) {
     }
     if (!down && event.type != platform::EventType::button_up) continue;
     CHECK_LT(static_cast<int>(event.button), platform::kButtonCount);
+    const bool shifted = viewer->held[static_cast<int>(Button::select)];
     viewer->held[static_cast<int>(event.button)] = down;
+    if (event.button == Button::select && !down && viewer->select_alone) viewer->change_mode = true;
     viewer->event_ns = viewer->backend->now_ns();
     if (!down) continue;
     if (!viewer->pressed) viewer->pressed = true, viewer->pressed_ns = event.time_ns;
@@ -50,12 +52,12 @@ void take_events(Viewer* viewer) {
     if (event.button == Button::screenshot) viewer->screenshot = true;
     if (event.button == Button::reload) viewer->reload = true;
     if (event.button == Button::start) viewer->home = viewer->front_home = true;
-    if (event.button == Button::finer) ++viewer->front_steps;
-    if (event.button == Button::faster) --viewer->front_steps;
+    if (event.button == Button::finer || (shifted && event.button == Button::up)) ++viewer->quality_steps;
+    if (event.button == Button::faster || (shifted && event.button == Button::down)) --viewer->quality_steps;
     if (event.button == Button::side_by_side) ++viewer->side_by_side_presses;
     if (event.button == Button::traced) ++viewer->traced_presses;
     if (event.button == Button::animation) ++viewer->animation_presses;
-    if (event.button == Button::select) viewer->change_mode = true;
+    viewer->select_alone = event.button == Button::select;
   }
   if (interrupted) viewer->quit = true;
 }
@@ -65,6 +67,7 @@ CameraInput read_input(const Viewer& viewer) {
     return (viewer.held[static_cast<int>(plus)] ? 1.0f : 0.0f) - (viewer.held[static_cast<int>(minus)] ? 1.0f : 0.0f);
   };
   CameraInput in;
+  if (viewer.held[static_cast<int>(Button::select)]) return in;
   in.right = axis(Button::right, Button::left);
   in.up = axis(Button::up, Button::down);
   in.forward = axis(Button::a, Button::b);
@@ -131,8 +134,26 @@ void change_animation(Viewer* viewer, Renderer* renderer, ViewerLoop* loop) {
   if (viewer->side_by_side) viewer->side_by_side->backend->forget(viewer->side_by_side);
 }
 
+// Turns the dial, and tells what the next pictures show.
+void change_quality(Viewer* viewer, Renderer* renderer, ViewerLoop* loop) {
+  if (viewer->quality_steps == 0) return;
+  Status status = viewer->dial ? end_refining(renderer, loop)
+                               : failure("+ and - change the quality, but not of frames shared with servers");
+  if (status.ok) status = turn_dial(viewer->dial, viewer->quality_steps, renderer);
+  viewer->quality_steps = 0;
+  char told[kFrontLineMax + 40] = "";
+  if (status.ok) {
+    char settings[kFrontLineMax];
+    format_hud_quality(candidate_of(renderer->settings), settings, sizeof settings);
+    std::snprintf(told, sizeof told, "quality %s: %s", kQualityLevelNames[static_cast<int>(viewer->dial->current)],
+                  settings);
+    loop->passed = true;
+  }
+  tell(viewer, status.ok ? told : status.message);
+}
+
 // Responds to buttons that have no function in this run.
-void answer_buttons(Viewer* viewer, Renderer* renderer) {
+void answer_buttons(Viewer* viewer, Renderer* renderer, ViewerLoop* loop) {
   if (viewer->screenshot) save_screenshot(viewer, renderer);
   viewer->screenshot = false;
   bool toggled = viewer->side_by_side_presses % 2 != 0;
@@ -144,9 +165,7 @@ void answer_buttons(Viewer* viewer, Renderer* renderer) {
                      : "V shows the reference, which this build does not have: use a desktop build");
   viewer->side_by_side_presses = 0;
   if (viewer->traced_presses > 0) answer_traced(viewer, *renderer);
-  if (!viewer->budget && viewer->front_steps != 0)
-    tell(viewer, "page up/down change settings within a budget: start with --budget-ms to use them");
-  if (!viewer->budget) viewer->front_steps = 0, viewer->front_home = false;
+  if (!viewer->budget) change_quality(viewer, renderer, loop), viewer->front_home = false;
 }
 
 bool is_file_changed(const Viewer& viewer, FileWatch* watch) {
@@ -197,6 +216,7 @@ void keep_picture(Viewer* viewer, const Renderer& renderer) {
 }
 
 void keep_view(Viewer* viewer, std::uint32_t animation, const ViewerLoop& loop) {
+  viewer->kept.quality_steps = viewer->dial ? viewer->dial->steps : 0;
   std::snprintf(viewer->kept.scene_path, sizeof viewer->kept.scene_path, "%s", viewer->scene_path.c_str());
   viewer->kept.control = loop.control;
   viewer->kept.control.camera.node = kNone;  // it stays where the user put it, attached to no moving node
@@ -208,6 +228,7 @@ void keep_view(Viewer* viewer, std::uint32_t animation, const ViewerLoop& loop) 
 // Restores the kept view, unless it is not possible in the reloaded scene.
 void take_kept_view(const Viewer& viewer, Renderer* renderer, ViewerLoop* loop) {
   if (viewer.kept.scene_path != viewer.scene_path) return;
+  if (viewer.dial && viewer.kept.quality_steps != 0) (void)turn_dial(viewer.dial, viewer.kept.quality_steps, renderer);
   loop->seconds = viewer.kept.seconds;
   if (viewer.kept.animation == kNone || viewer.kept.animation < renderer->scene.animations.count)
     renderer->view.animation = viewer.kept.animation;
@@ -399,7 +420,7 @@ Status run_viewer(Viewer* viewer, Renderer* renderer, bool* again) {
       viewer->waiting_since_ns = viewer->backend->now_ns();
       break;
     }
-    answer_buttons(viewer, renderer);
+    answer_buttons(viewer, renderer, &loop);
     change_animation(viewer, renderer, &loop);
     status = step_scene(viewer, renderer, &loop);
     if (status.ok) status = step_viewer(viewer, renderer, &loop);

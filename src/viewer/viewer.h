@@ -10,6 +10,7 @@
 #include "present/pack.h"
 #include "session/camera_control.h"
 #include "session/open_scene.h"
+#include "session/quality_dial.h"
 #include "session/servers.h"
 #include "viewer/hud.h"
 #include "viewer/motion.h"
@@ -42,6 +43,7 @@ struct KeptView {
   bool camera_moved = false;  // by the user; otherwise shows the scene's own camera, which may have changed
   double seconds = 0;
   std::uint32_t animation = 0;
+  int quality_steps = 0;  // as of QualityDial
 };
 
 struct Viewer {
@@ -55,6 +57,7 @@ struct Viewer {
   PixelFormat format;
   Servers* servers = nullptr;          // null: the device renders alone
   Budget* budget = nullptr;            // null: frames are refined, however long they take
+  QualityDial* dial = nullptr;         // null: the quality is the budget's, or agreed with servers
   SideBySide* side_by_side = nullptr;  // null: no reference to show
   bool side_by_side_shown = true;      // the user wants to see it
   std::uint64_t pack_ns = 0;           // for the last picture shown
@@ -67,8 +70,9 @@ struct Viewer {
   HudNote note;
   char dropped[1024] = {0};  // a file dropped on the window: the scene to show next
   bool held[platform::kButtonCount] = {};
+  bool select_alone = false;  // no other button was pressed since select was: its release switches orbit and fly
   bool quit = false, reload = false, screenshot = false, home = false, change_mode = false;  // requested
-  int front_steps = 0;                                                                       // requested
+  int quality_steps = 0;                                                                     // requested
   int side_by_side_presses = 0;                                                              // requested
   bool side_by_side_changed = false;  // side_by_side_shown changed and the screen does not show it yet
   bool front_home = false;            //   returns the choice to the budget

@@ -8,6 +8,7 @@
 #include "base/rng.h"
 #include "desktop/accuracy/display.h"
 #include "desktop/accuracy/flip.h"
+#include "support/hard_case.h"
 
 using namespace pocketray;
 
@@ -137,4 +138,75 @@ TEST_CASE("claim_front_is_what_nothing_beats") {
   CHECK(claimed_front({1, 2}, {&base, &noisy_gain}) == std::vector<bool>{true, false});
   CHECK(claimed_front({1, 2}, {&base, &clear_gain}) == std::vector<bool>{true, true});
   CHECK(claimed_front({1, 2}, {&base, &tiny_gain}) == std::vector<bool>{true, false});
+}
+
+namespace {
+
+// Two pictures and the halves of a noisy reference.
+struct Trial {
+  Picture first, second, one, other;
+  int nearer;     // by the truth itself: −1 the first, 1 the second
+  bool is_clear;  // one is changed more than the other
+};
+
+double clean_flip(const Picture& truth, const Picture& test) {
+  return mean_of(flip_errors(truth, test, kSide, kSide, 23.6));
+}
+
+// One of them is changed by 15 to 40 % more than the other, or in one of ten trials by as much.
+Trial make_trial(const Picture& truth, std::uint64_t seed) {
+  Rng rng = make_rng(74, seed);
+  Trial trial;
+  trial.is_clear = next_u32(&rng) % 10 != 0;
+  const float by = 0.06f + 0.06f * next_float(&rng), more = trial.is_clear ? 1.15f + 0.25f * next_float(&rng) : 1;
+  trial.first = changed(truth, by), trial.second = truth;
+  // The other half of the values: neither picture contains the other.
+  for (std::size_t i = 1; i < truth.size(); i += 2) trial.second[i] += by * more;
+  if (next_u32(&rng) % 2) std::swap(trial.first, trial.second);
+  trial.nearer = clean_flip(truth, trial.first) < clean_flip(truth, trial.second) ? -1 : 1;
+  const float noise = 0.05f + 0.15f * next_float(&rng);
+  trial.one = noisy(truth, noise, &rng), trial.other = noisy(truth, noise, &rng);
+  return trial;
+}
+
+int nearer_by_difference(const Trial& t) {
+  const Distance first = distance_between(t.first, t.one, t.other), second = distance_between(t.second, t.one, t.other);
+  const Difference gain = difference(first, second);
+  return !is_claimed(gain) ? 0 : gain.value > 0 ? 1 : -1;
+}
+
+// The lower ꟻLIP wins.
+int nearer_by_mean(const Trial& t) {
+  const Picture reference = mean_picture(t.one, t.other);
+  return clean_flip(reference, t.first) < clean_flip(reference, t.second) ? -1 : 1;
+}
+
+// Nothing below the reference's own error is believed.
+int nearer_beyond_noise(const Trial& t) {
+  const Picture reference = mean_picture(t.one, t.other);
+  const double gain = clean_flip(reference, t.first) - clean_flip(reference, t.second);
+  return std::fabs(gain) < 0.5 * clean_flip(t.one, t.other) ? 0 : gain < 0 ? -1 : 1;
+}
+
+}  // namespace
+
+// Goal: HARDCASES row 74: of two settings compared with one noisy reference, the standard error of their difference
+// tells which is nearer, or that it cannot tell. Method: seeded trials with known answers; of at least 99 %, a claim
+// has the true sign, and clear differences are claimed.
+TEST_CASE("hard_74_settings_judged_by_one_noisy_reference") {
+  const Picture truth = smooth_picture();
+  std::vector<Trial> trials;
+  for (int i = 0; i < gate_share(60, 1000); ++i) trials.push_back(make_trial(truth, static_cast<std::uint64_t>(i)));
+  auto is_wrong = [](const Trial& t, int nearer) { return nearer == -t.nearer || (t.is_clear && nearer == 0); };
+  const Answers ours = time_answers(trials, nearer_by_difference, is_wrong),
+                mean = time_answers(trials, nearer_by_mean, is_wrong),
+                beyond = time_answers(trials, nearer_beyond_noise, is_wrong);
+  const bool is_held = ours.wrong <= (trials.size() + 99) / 100;
+  CAPTURE(ours.wrong);
+  CHECK(is_held);
+  CHECK(mean.wrong > 0);
+  CHECK(beyond.wrong > trials.size() / 5);
+  count_beside("the lower error wins", "pair of pictures", trials.size(), mean, ours);
+  count_beside("only beyond the reference’s own error", "pair of pictures", trials.size(), beyond, ours);
+  count_hard(trials.size(), is_held ? 0 : ours.wrong, "right in 99 % of trials");
 }

@@ -149,15 +149,19 @@ TEST_CASE("page_is_well_formed_and_shows_each_knob") {
 // its picture; a sweep without levels.
 TEST_CASE("page_opens_with_what_to_set") {
   Sweep sweep = sample_sweep();
-  sweep.quality = {{"low", "--samples 1", 12.5, 0.25, sample_picture(4, 3, 0)},
-                   {"best", "", 480, 0.0625, sample_picture(4, 3, 1)}};
+  sweep.quality = {{"low", "--samples 1 --depth 2", 12.5, 0.25, sample_picture(4, 3, 0), 0},
+                   {"best", "", 480, 0.0625, sample_picture(4, 3, 1), 4}};
   PagePictures pictures;
   pictures.quality["low"] = "png", pictures.truth_png = "truth";
   const std::string page = page_of(sweep, pictures);
   CHECK(markup_fault(page) == "");
-  CHECK(has(page, "<b>low</b> 12.5 ms, FLIP 0.250<br /><code>--quality low: --samples 1</code>"));
-  CHECK(has(page, "<b>best</b> 480 ms, FLIP 0.0625<br /><code>--quality best</code>"));
-  CHECK(has(page, "<b>full light transport</b> 256 samples per pixel"));
+  CHECK(has(page,
+            "<b>low</b><a href=\"accuracy.csv#row=2\"><b>12.5 ms</b> <b>FLIP 0.250</b></a><code>--quality low</code>"
+            "<small><span>--samples 1</span> <span>--depth 2</span></small>"));
+  CHECK(has(page,
+            "<b>best</b><a href=\"accuracy.csv#row=6\"><b>480 ms</b> <b>FLIP 0.0625</b></a>"
+            "<code>--quality best</code><small>the defaults</small>"));
+  CHECK(has(page, "<b>full light transport</b><code>pocketray reference</code><small>256 samples per pixel</small>"));
   CHECK(page.find("--quality low") < page.find("What a user sees"));
   CHECK(!has(page_of(sample_sweep(), {}), "--quality"));
 }
@@ -168,8 +172,9 @@ TEST_CASE("page_answers_what_buys_the_most") {
   Sweep sweep = sample_sweep();
   std::string page = page_of(sweep, {});
   CHECK(has(page,
-            "<b>area-lights</b> buys the most accuracy per millisecond: .01 of FLIP for <b>0.700 ms</b> per frame"));
-  CHECK(has(page, "<b>samples</b> buys the least: 2.40 ms"));
+            "<b>area-lights</b> buys the most accuracy per millisecond: .01 of FLIP for <b><a "
+            "href=\"accuracy.csv#row=11\">0.700 ms</a></b> per frame"));
+  CHECK(has(page, "<b>samples</b> buys the least: <a href=\"accuracy.csv#row=7\">2.40 ms</a>"));
   CHECK(has(page, "Better and no slower: normals."));
   CHECK(page.find("buys the most") < page.find("id=\"samples\""));
   CHECK(!has(page, "<td class=\"weak\">"));
@@ -205,8 +210,8 @@ TEST_CASE("page_tells_what_is_paid_in_bytes") {
   std::string page = page_of(sweep, {});
   CHECK(markup_fault(page) == "");
   CHECK(has(page,
-            "<b>near-lossless</b> saves bytes from render servers, not time: 1500 of 4000 per frame for "
-            "FLIP 0.010."));
+            "<b>near-lossless</b> saves bytes from render servers, not time: <a href=\"accuracy.csv#row=15\">1500 of "
+            "4000 per frame for FLIP 0.010</a>."));
   CHECK(!has(page, "No gain that can be claimed"));
   CHECK(has(page, "<th>bytes per frame</th>"));
   CHECK(has(page, "<td>2500</td>"));
@@ -256,7 +261,7 @@ TEST_CASE("page_shows_either_reference_and_each_method") {
   CHECK(has(page, "<h2>The front by the converged lighting model</h2>"));
   CHECK(!has(page, "What the format of the screen costs"));
   CHECK(has(page, "Methods of indirect light"));
-  CHECK(has(page, "<tr><th>none</th><td>"));
+  CHECK(has(page, "<tr><th>none</th><td class=\"name\">"));
   sweep.measured[0].flip_as = {0.21, 0.205, 0.19};
   CHECK(has(page_of(sweep, pictures), "FLIP rgb565 0.210, rgb565-dithered 0.205, rgb888 0.190 from the truth"));
   sweep.judge = Judge::model;
@@ -283,7 +288,8 @@ TEST_CASE("report_has_no_gaps") {
     REQUIRE_MESSAGE(status.ok, status.message);
     CHECK(drawn == (std::system("gnuplot -V >/dev/null 2>&1") == 0));
     std::vector<std::string> plots = {"/front", "/price"};
-    if (sweep == &whole) plots.insert(plots.end(), {"/front_model", "/indirect"});
+    if (has_judged(*sweep, Judge::model)) plots.push_back("/front_model");
+    if (sweep == &whole) plots.push_back("/indirect");
     for (const KnobFigures& knob : sweep->knobs) {
       plots.push_back("/knob_" + knob.name);
       CHECK(has(content(folder.path + ("/strip_" + knob.name) + ".png"), "PNG"));

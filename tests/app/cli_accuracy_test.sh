@@ -5,7 +5,7 @@
 # Goal: a sweep writes its table and its page, resumes where it was interrupted, and refuses another sweep's folder.
 if "${run[@]}" --help | grep -q '^ *accuracy '; then
   tiny=(--size 16x12 --threads 2 --reference-samples 2)
-  expect accuracy_without_folder 2 'output is required' accuracy cube
+  expect accuracy_without_folder 2 'needs --output DIR' accuracy cube
   expect accuracy_output 1 'rgb565-dithered' accuracy cube "${tiny[@]}" -o sweep --pixel-format vga
   expect accuracy_reference 1 'model, physical or a file' accuracy cube "${tiny[@]}" -o sweep --reference best
   expect accuracy_folder 1 'no/such' accuracy cube "${tiny[@]}" -o no/such/folder

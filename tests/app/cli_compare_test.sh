@@ -117,7 +117,7 @@ expect truncated_ppm 1 'cut.ppm is truncated' compare a.ppm cut.ppm -o refused.p
 expect empty_picture 1 'empty.ppm' compare a.ppm empty.ppm -o refused.png
 expect no_picture 1 'text.png is not a' compare a.ppm text.png -o refused.png
 expect folder_as_picture 1 'folder.png' compare a.ppm folder.png -o refused.png
-expect one_picture 2 'B is required' compare a.ppm
+expect one_picture 2 'needs B' compare a.ppm
 expect map_ending 1 'must end in .png' compare a.ppm b.ppm -o map.jpg
 expect map_nowhere 1 'no/such/map.png' compare none.png b.ppm -o no/such/map.png
 expect map_is_a_folder 1 'is a folder' compare none.png b.ppm -o folder.png

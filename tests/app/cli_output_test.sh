@@ -101,7 +101,7 @@ expect nowhere 0 'effects' plan cube --json /dev/null
 
 # Goal: a failed write to standard output is reported and breaks nothing else. Method: a full device and a closed output, with
 # every command that prints.
-printing=("--help" "--version" "plan cube" "plan cube --json -" "render cube --size 8x6 -o full.ppm" "bake cube -o full.pray"
+printing=("--help" "--version" "render --help-all" "plan cube" "plan cube --json -" "render cube --size 8x6 -o full.ppm" "bake cube -o full.pray"
   "render cube --size 8x6 -o full.ppm --json -" "bench cube --size 8x6 --frames 1 --no-prices"
   "bench cube --size 8x6 --frames 1 --no-prices --json -" "bake cube -o -" "render cube --size 8x6 -o -")
 ! has split-report || printing+=("split-report cube --size 64x48 --steps 2 --frames 2 --device-ns 5000 --server-ns 500 --no-paper")
@@ -119,8 +119,8 @@ cmp -s full.ppm a.ppm || check picture_is_whole false
 check scene_is_whole cmp -s full.pray seen.pray
 
 # Goal: no option accepts an empty text. Method: every option of every command that takes a text or a number.
-for command in $("${run[@]}" --help | sed -n '/^Subcommands/,$s/^  \([a-z][a-z-]*\) .*/\1/p'); do
-  for option in $("${run[@]}" "$command" --help | grep -oE '^ +(-[a-z],)?--[a-z-]+' | grep -oE -- '--[a-z-]+' | grep -v -- '--help'); do
+for command in $("${run[@]}" --help | sed -n '/^Help/,$d; s/^  \([a-z][a-z-]*\)  .*/\1/p'); do
+  for option in $("${run[@]}" "$command" --help-all | grep -oE '^ +(-[a-z], )?--[a-z-]+' | grep -oE -- '--[a-z-]+'); do
     expect "empty_${command}_$option" 2 "$option has an empty value" "$command" cube "$option" ''
   done
   expect "empty_${command}_scene" 2 'argument 2 is empty' "$command" ''

@@ -42,8 +42,11 @@ expect plan_has_the_dial_as_json 0 '"level": "best"' plan cornell --json -
 # picture of each by name.
 if "${run[@]}" --help | grep -q '^ *accuracy '; then
   "${run[@]}" accuracy cube --size 16x12 --threads 2 --reference-samples 2 --rounds 1 -o sweep >/dev/null 2>&1
-  front=$(ls "$XDG_CACHE_HOME"/pocketray/*.front)
+  front=$(ls "$XDG_CACHE_HOME"/pocketray/*.front | grep -v -e '-2.front')
+  expect plan_knows_the_prices_of_this_machine 0 'priced_here": true' plan cube --threads 2 --json -
+  expect plan_says_that_prices_are_of_another 0 'with times of another machine or number of threads' plan cube --threads 1
   rest="depth=8 cut-off=0.5 texture-filter=scene normals=scene indirect=auto reconstruction=bicubic virtual-lights=64 selective=0 resolution=full light-tolerance=0.0625 environment-shadows=32"
+  rm "$XDG_CACHE_HOME"/pocketray/*-2.front
   printf "pocketray-front 2\nsamples=2 area-lights=1 $rest flip=.4 flip888=.3 ns=100\nsamples=9 area-lights=4 $rest flip=.2 flip888=.1 ns=1e4\n" >"$front"
   expect plan_shows_what_was_measured 0 '^  draft .*ꟻLIP 0.300 +samples 1 to 2, area-lights 4 to 1' plan cube
   expect plan_says_that_it_was_measured 0 'as .pocketray accuracy. measured this scene' plan cube

@@ -130,7 +130,7 @@ if [ $# -eq 0 ] && "${run[@]}" --help | grep -q '^ *serve '; then  # not under a
   for value in 1.5 -0.5; do expect "share_$value" 1 '0 … 1' "${one[@]}" --server "$address" --share=$value; done
   expect share_nan 1 'finite number' "${one[@]}" --server "$address" --share=nan
   for option in price energy-pixel energy-byte cost-weight cost-cap; do
-    expect "${option}_below_0" 1 'negative' "${one[@]}" --server "$address" --$option=-1
+    expect "${option}_below_0" 1 'it must lie in 0 …' "${one[@]}" --server "$address" --$option=-1
     expect "${option}_without_a_server" 1 '--server' "${one[@]}" --$option=1
   done
   expect price_is_no_number 1 'price' "${one[@]}" --server "$address" --price cheap

@@ -39,7 +39,7 @@ expect key_missing 1 '--key none.key: no such file: make one with' scenes --serv
 expect key_folder 1 '--key .: not a file' view cube --screen null --server :1 --key .
 expect key_without_a_server 1 '--key encrypts links to render servers: add --server' render cube -o b.ppm --key other.key
 expect key_and_no_key 2 'excludes' serve --key other.key --insecure-lan
-expect key_help 0 '--key' render --help
+expect key_help 0 '--key' render --help-all
 expect serve_to_others_offers_a_key 1 'keygen.*--insecure-lan' serve --listen 0.0.0.0:0
 [ $# -eq 0 ] || finish  # under an emulated CPU
 

@@ -4,16 +4,6 @@
 
 # Goal: help is helpful, and usage errors differ from bad input.
 expect help 0 'render +render a frame' --help
-expect help_of_command 0 '--area-lights' render --help
-expect version 0 '[0-9]+\.[0-9]+' --version
-expect no_command 2 'subcommand' 
-expect unknown_option 2 'nonsense' render cornell --nonsense
-expect near_option 2 "no option --sise, did you mean '--size'" render cornell --sise 3x4
-expect near_version 2 "did you mean '--version'" --verson
-expect near_command 2 "no command 'rendr', did you mean 'render'" rendr cornell
-expect far_command 2 "no command 'scientific' \\(see" scientific
-expect bad_value 1 'budget-ms' render cornell --budget-ms -3
-expect bad_number 1 'threads' render cornell --threads many
 expect last_before_first 1 'the last frame comes before the first' render cube "${small[@]}" --frames 5:3 -o refused.ppm
 expect no_such_camera 1 'counted from 0' render cube "${small[@]}" --camera-index 7 -o refused.ppm
 expect rotated_picture 1 '--rotate is for .raw' render cube "${small[@]}" --rotate 90 -o refused.ppm
@@ -28,12 +18,16 @@ if "${run[@]}" view --help >/dev/null 2>&1; then
   expect nothing_to_choose 1 'name a SCENE' view --screen null --frames 1
 fi
 expect unknown_scene 1 'no_such_scene' render no_such_scene -o a.ppm
+expect size_with_another_cross 0 '16×12' render cube --size 16X12 -o a.ppm
+for memory in 24M 24MB 24MiB 24576K 24576KiB; do
+  expect "memory_$memory" 0 'of 24.0 MiB' plan cube "${small[@]}" --memory $memory
+done
 expect bad_size 1 '320x240' render cube --size 0y3 -o a.ppm
 expect bad_size_zero 1 'width' render cube --size 0x3 -o a.ppm
 expect bad_ending 1 '\.png' render cube "${small[@]}" -o a.bmp
 expect bad_folder 1 'cannot be written' render cube "${small[@]}" -o no/such/folder/a.ppm
 expect bad_depth 1 'depth' render cube "${small[@]}" --depth 99 -o a.ppm
-expect bad_effect 1 'unknown effect' render cube "${small[@]}" --effects auto,-sparkle -o a.ppm
+expect bad_effect 1 "no effect 'sparkle'" render cube "${small[@]}" --effects auto,-sparkle -o a.ppm
 expect bad_camera 1 'VFOV' render cube "${small[@]}" --camera "1 2" -o a.ppm
 expect camera_at_its_target 1 'same point' render cube "${small[@]}" --camera "1,1,1 1,1,1 0,1,0 40" -o a.ppm
 expect camera_index 1 'no camera 7' render cube "${small[@]}" --camera-index 7 -o a.ppm

@@ -84,25 +84,28 @@ int run(const BenchOptions& options) {
 void add_options(Command program, BenchOptions* o) {
   std::vector<std::string> accels;
   for (const AccelInfo* info : kAccelList) accels.push_back(info->name);
-  program.add_option("--scene", o->scenes,
-                     "buddha, bunny, dragon, conference, a built-in scene or a file; may list several. Default: these "
-                     "four, cornell and statue");
-  program.add_option("--rays", o->kinds, "kinds of rays to trace: primary, shadow, bounce; default: all")
-      .one_of({"primary", "shadow", "bounce"});
-  program.add_option("--size", o->sizes, "picture sizes, multiples of 8; default: 320x240 1280x960");
-  program.add_option("--isa", o->isas, "sse2: limit both sides to SSE2; native: everything the CPU has; default: both")
-      .one_of({"sse2", "native"});
-  program.add_option("--accel", o->accel, "our accelerator").one_of(accels).capture_default_str();
+  program
+      .add_option("--scene NAME", o->scenes,
+                  "buddha, bunny, dragon, conference, a built-in scene or a file; may list several")
+      .default_str("these four, cornell and statue");
+  program.add_option("--rays KIND", o->kinds, "kinds of rays to trace")
+      .one_of({"primary", "shadow", "bounce"})
+      .default_str("all");
+  program.add_option("--size WxH", o->sizes, "picture sizes, multiples of 8").default_str("320x240 1280x960");
+  program.add_option("--isa NAME", o->isas, "what both sides may use: SSE2 or everything the CPU has")
+      .one_of({"sse2", "native"})
+      .default_str("both");
+  program.add_option("--accel NAME", o->accel, "our accelerator").one_of(accels).capture_default_str();
   program.add_option("--rounds", o->rounds, "rounds in which both trace them in turn")
       .range(1, 10000)
       .capture_default_str();
   program.add_option("--build-rounds", o->build_rounds, "the same for building and refitting; 0: skip them")
       .range(0, 10000)
       .capture_default_str();
-  program.add_option("--models", o->models, "folder of the models").capture_default_str();
-  program.add_option("--cache", o->cache, "folder to unpack archives into").capture_default_str();
-  program.add_option("--json", o->json, "write the table as JSON to FILE, or - for standard output");
-  program.add_option("--build-json", o->build_json, "write the table of acceleration structures as JSON to FILE");
+  program.add_option("--models DIR", o->models, "folder of the models").capture_default_str();
+  program.add_option("--cache DIR", o->cache, "folder to unpack archives into").capture_default_str();
+  program.add_option("--json FILE", o->json, "write the table as JSON to FILE, or - for standard output");
+  program.add_option("--build-json FILE", o->build_json, "write the table of acceleration structures as JSON to FILE");
 }
 
 }  // namespace
@@ -112,13 +115,13 @@ int main(int argument_count, char** arguments) {
   using namespace pocketray;
   CommandLine line(
       "bench_embree",
-      "bench_embree traces the same rays through pocketray's accelerator and through Embree, in turn, on one thread,\n"
-      "checks that both hit the same, and prints the rays per second of each.\n"
-      "Try:  bench_embree --scene bunny --size 320x240 --isa sse2\n"
-      "      bench_embree --scene cornell --rays shadow bounce --json -\n");
+      "bench_embree traces the same rays through pocketray's accelerator and through Embree, in turn, on one thread, "
+      "checks that both hit the same, and prints the rays per second of each.");
   Command program = line.program();
   BenchOptions options;
   add_options(program, &options);
+  program.example("bench_embree --scene bunny --size 320x240 --isa sse2");
+  program.example("bench_embree --scene cornell --rays shadow bounce --json -");
   program.footer("A full run takes about twenty minutes; Ctrl-C keeps finished results.");
   catch_interrupts();
   ParseResult parsed = line.parse({arguments + 1, arguments + argument_count});

@@ -9,14 +9,15 @@ else()
   set_source_files_properties(tests/hard/contracted.cpp PROPERTIES COMPILE_OPTIONS "-ffp-contract=fast")
 endif()
 
-# `make hardcases`: runs the tests hard_NN_… of all suites in full and writes hardcases.html. JSON=FILE in the environment
-# also writes the table.
+# `make hardcases`: runs the tests hard_NN_… of all suites and writes hardcases.html. hardcases.sh explains SHARE, SUITES and
+# JSON in the environment.
 foreach(suite ${POCKETRAY_HARD_SUITES})
   list(APPEND hard_programs $<TARGET_FILE:${suite}>)
 endforeach()
 string(REPLACE ";" " " emulator "${CMAKE_CROSSCOMPILING_EMULATOR}")
 add_custom_target(hardcases DEPENDS ${POCKETRAY_HARD_SUITES} USES_TERMINAL VERBATIM
   COMMAND ${CMAKE_COMMAND} -E env "EMULATOR=${emulator}" "HTML=${CMAKE_CURRENT_BINARY_DIR}/hardcases.html"
+    "LINES_FILE=${CMAKE_CURRENT_BINARY_DIR}/hardcases.lines"
     bash ${CMAKE_CURRENT_SOURCE_DIR}/tests/hard/hardcases.sh ${hard_programs})
 
 find_program(PYTHON3 python3)

@@ -1,4 +1,5 @@
 // Which animations of a glTF file play together, what they drive, and which keys count.
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -7,6 +8,7 @@
 #include "import/gltf_writer.h"
 #include "import/import_testing.h"
 #include "import/posed.h"
+#include "scene/channel.h"
 #include "support/hard_case.h"
 
 using namespace pocketray;
@@ -121,6 +123,81 @@ TEST_CASE("hard_67_of_keys_at_equal_times_the_last_counts") {
   ImportedScene descending = keyed(folder, {0, 2, 1});
   CHECK(contains(descending.warning, "node 0 'A' (translation) is left out: its keys descend"));
   CHECK(!is_animated(descending.scene));
+}
+
+namespace {
+
+// A time at which a track of keys is asked for its place, and the place by exact arithmetic.
+struct Moment {
+  const ImportedScene* imported;
+  const std::vector<float>* times;
+  double time, place;
+};
+
+// The last of keys at equal times counts.
+double place_at(const std::vector<float>& times, double time) {
+  const auto begin = times.begin();
+  const auto next = std::find_if(begin, times.end(), [&](float key) { return static_cast<double>(key) > time; });
+  const auto last = next - begin - 1;
+  if (next == times.end()) return 10.0 * static_cast<double>(last);
+  const auto after = std::upper_bound(next, times.end(), *next) - begin - 1;
+  const long double from = static_cast<long double>(times[static_cast<std::size_t>(last)]);
+  const long double part = (static_cast<long double>(time) - from) / (static_cast<long double>(*next) - from);
+  return 10 * static_cast<double>(static_cast<long double>(last) + part * static_cast<long double>(after - last));
+}
+
+float place_by_ours(const Moment& moment) {
+  const Scene& scene = moment.imported->scene;
+  float place[3];
+  channel_value(scene, scene.channels[0], moment.time, 3, place);
+  return place[0];
+}
+
+// As textbooks have it: the first interval that holds the time, and all of it in floats.
+float place_in_floats(const Moment& moment) {
+  const std::vector<float>& times = *moment.times;
+  const auto time = static_cast<float>(moment.time);
+  if (time < times[0]) return 0;
+  for (std::size_t i = 0; i + 1 < times.size(); ++i)
+    if (time <= times[i + 1]) return 10 * (static_cast<float>(i) + (time - times[i]) / (times[i + 1] - times[i]));
+  return static_cast<float>(10 * (times.size() - 1));
+}
+
+}  // namespace
+
+// Goal: between keys at equal and nearly equal times the place is the exact one, where floats give the first of equal
+// keys, 0/0 or either neighbour. Method: tracks from 0 and from 1,000 s on; times at, between and around the keys.
+TEST_CASE("hard_67_key_times_by_ordinary_interpolation") {
+  TemporaryFolder folder;
+  Rng rng = make_rng(67);
+  const auto track_count = static_cast<std::size_t>(gate_share(100, 1000));
+  std::vector<std::vector<float>> tracks(track_count);
+  std::vector<ImportedScene> imported;
+  std::vector<Moment> moments;
+  for (std::vector<float>& times : tracks) {
+    times.push_back(next_u32(&rng) % 2 ? 0.0f : 1000.0f);
+    for (int key = 1; key < 6; ++key) {
+      const float last = times.back(), steps[] = {0, std::nextafter(last, 2e9f) - last, 0.1f + next_float(&rng)};
+      times.push_back(last + steps[key == 5 ? 2 : next_u32(&rng) % 3]);
+    }
+    imported.push_back(keyed(folder, times));
+    REQUIRE(imported.back().scene.channels.count == 1);
+  }
+  for (std::size_t i = 0; i < track_count; ++i)
+    for (std::size_t key = 0; key + 1 < tracks[i].size(); ++key) {
+      const auto from = static_cast<double>(tracks[i][key]), to = static_cast<double>(tracks[i][key + 1]);
+      for (const double time : {from, from + 0.25 * (to - from), from + 0.5 * (to - from), to})
+        moments.push_back({&imported[i], &tracks[i], time, place_at(tracks[i], time)});
+    }
+  auto is_wrong = [](const Moment& moment, float place) {
+    return !(std::fabs(static_cast<double>(place) - moment.place) < 0.001);
+  };
+  const Answers ours = time_answers(moments, place_by_ours, is_wrong),
+                plain = time_answers(moments, place_in_floats, is_wrong);
+  CHECK(ours.wrong == 0);
+  CHECK(plain.wrong > 0);
+  count_beside("first interval, in floats", "place at a time", moments.size(), plain, ours);
+  count_hard(moments.size(), ours.wrong, "the exact place within 1/10,000 of a step");
 }
 
 // Goal: KHR_animation_pointer drives visibility, lights, cameras and materials; what it cannot drive is named. Method:

@@ -226,6 +226,85 @@ TEST_CASE("hard_68_polygons_of_many_corners_take_little_time") {
   CHECK_FALSE(triangulate_polygon(flat(tangle), &made));
 }
 
+namespace {
+
+struct LargePolygon {
+  std::vector<Vec3> corners;
+  double area;
+};
+std::vector<LargePolygon> large_polygons(int corner_count) {
+  std::vector<LargePolygon> polygons;
+  for (const Loop& loop : {star(corner_count, .2f, 1), star(corner_count, .9f, 2), comb(corner_count / 2 - 1, false),
+                           comb(corner_count / 2 - 1, true), spiral(corner_count, corner_count / 4000.0)})
+    polygons.push_back({flat(loop), shoelace(loop)});
+  return polygons;
+}
+
+double fan_area(const LargePolygon& polygon) {
+  PolygonTriangles fan;
+  for (std::uint32_t i = 2; i < polygon.corners.size(); ++i) fan.corners.insert(fan.corners.end(), {0u, i - 1, i});
+  return area_of(polygon.corners, fan);
+}
+
+// [Meisters 1975]: cuts off corners whose triangle holds no other, until three are left.
+double clipped_ears_area(const LargePolygon& polygon) {
+  const std::vector<Vec3>& p = polygon.corners;
+  auto turn = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+    return (double(p[b].x) - double(p[a].x)) * (double(p[c].y) - double(p[a].y)) -
+           (double(p[b].y) - double(p[a].y)) * (double(p[c].x) - double(p[a].x));
+  };
+  double twice = 0;
+  for (std::uint32_t i = 1; i + 1 < p.size(); ++i) twice += turn(0, i, i + 1);
+  std::vector<std::uint32_t> left(p.size());
+  for (std::uint32_t i = 0; i < left.size(); ++i)
+    left[i] = twice > 0 ? i : static_cast<std::uint32_t>(p.size()) - 1 - i;
+  PolygonTriangles made;
+  std::size_t at = 0, failed = 0;
+  while (left.size() > 2 && failed < left.size()) {
+    const std::size_t count = left.size();
+    const std::uint32_t a = left[(at + count - 1) % count], b = left[at % count], c = left[(at + 1) % count];
+    bool is_ear = turn(a, b, c) > 0;
+    for (std::size_t i = 0; is_ear && i < count; ++i)
+      is_ear = left[i] == a || left[i] == b || left[i] == c ||
+               !(turn(a, b, left[i]) >= 0 && turn(b, c, left[i]) >= 0 && turn(c, a, left[i]) >= 0);
+    if (!is_ear) {
+      ++at, ++failed;
+      continue;
+    }
+    made.corners.insert(made.corners.end(), {a, b, c});
+    left.erase(left.begin() + static_cast<std::ptrdiff_t>(at % count));
+    failed = 0;
+  }
+  return area_of(p, made);
+}
+
+}  // namespace
+
+// Goal: a polygon of 10⁵ corners is right and takes a fraction of a second, where a fan is wrong and clipping ears
+// takes time that grows with the square. Method: stars, combs and a spiral; ears of polygons that they can finish.
+TEST_CASE("hard_68_polygons_of_100000_corners_by_ordinary_triangulations") {
+  auto by_ours = [](const LargePolygon& polygon) {
+    PolygonTriangles made;
+    return triangulate_polygon(polygon.corners, &made) ? area_of(polygon.corners, made) : -1;
+  };
+  auto is_wrong = [](const LargePolygon& polygon, double area) {
+    return !(std::fabs(area - polygon.area) <= 1e-6 * polygon.area);
+  };
+  const std::vector<LargePolygon> large = large_polygons(gate_share(10000, 100000)),
+                                  small = large_polygons(gate_share(600, 10000));
+  auto corners = [](const std::vector<LargePolygon>& polygons) {
+    return "polygon of " + std::to_string(polygons[0].corners.size()) + " corners";
+  };
+  const Answers ours = time_answers(large, by_ours, is_wrong), fan = time_answers(large, fan_area, is_wrong);
+  const Answers ours_of_small = time_answers(small, by_ours, is_wrong),
+                ears = time_answers(small, clipped_ears_area, is_wrong);
+  CHECK(ours.wrong + ours_of_small.wrong == 0);
+  CHECK(fan.wrong > 0);
+  count_beside("fan from the first corner", corners(large).c_str(), large.size(), fan, ours);
+  count_beside("ear clipping", corners(small).c_str(), small.size(), ears, ours_of_small);
+  count_hard(large.size() + small.size(), ours.wrong + ours_of_small.wrong, "the area within 1e-6");
+}
+
 // Goal: very many corners at one place take little time, too. Method: a flower whose 50,000 petals meet in the middle,
 // and a corner that is named 100,000 times before the rest of a fan.
 TEST_CASE("hard_68_many_corners_at_one_place_take_little_time") {

@@ -1,11 +1,13 @@
 // Effects that a scene states but no picture shows: the plan reads values, not flags (HARDCASES row 73).
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <functional>
 #include <string>
 
 #include "plan/plan_effects.h"
 #include "support/generated_scene.h"
+#include "support/hard_case.h"
 
 using namespace pocketray;
 
@@ -166,6 +168,67 @@ TEST_CASE("hard_73_effects_that_show_nothing_are_off") {
       if (!visible) CHECK(std::string(d.reason) == row.reason);
       CHECK(shows_the_same_by_all(*s));
     }
+}
+
+namespace {
+
+// An effect of a scene, and whether any picture can show it.
+struct Asked {
+  const GeneratedScene* scene;
+  Effect effect;
+  bool visible;
+};
+
+// Asks what a scene states instead of what it shows, as renderers do that choose their shaders by flags.
+bool is_on_by_flags(const Asked& asked) {
+  const GeneratedScene& s = *asked.scene;
+  auto any_material = [&](auto test) { return std::any_of(s.materials.begin(), s.materials.end(), test); };
+  auto any_map = [&](auto test) { return std::any_of(s.material_maps.begin(), s.material_maps.end(), test); };
+  switch (asked.effect) {
+    case Effect::emission:
+    case Effect::area_light:
+      return any_material([](const Material& m) { return !is_zero(m.emission); });
+    case Effect::alpha_blend:
+      return any_material([](const Material& m) { return m.alpha_mode == AlphaMode::blend; });
+    case Effect::alpha_mask:
+      return any_material([](const Material& m) { return m.alpha_mode == AlphaMode::mask; });
+    case Effect::normal_map:
+      return any_map([](const MaterialMaps& m) { return m.normal.texture != kNone; });
+    case Effect::occlusion:
+      return any_map([](const MaterialMaps& m) { return m.occlusion.texture != kNone; });
+    case Effect::smooth_normal:
+      return s.with_normals;
+    case Effect::spot_light:
+      return std::any_of(s.lights.begin(), s.lights.end(), [](const Light& l) { return l.kind == LightKind::spot; });
+    case Effect::animation:
+      return !s.animations.empty();
+    default:
+      FAIL("no flag");
+      return false;
+  }
+}
+
+}  // namespace
+
+// Goal: an effect is on if and only if a picture can show it, where flags turn on what is invisible. Method: the cases
+// above, asked many times.
+TEST_CASE("hard_73_effects_by_flags") {
+  std::vector<std::unique_ptr<GeneratedScene>> scenes;
+  std::vector<Asked> asked;
+  for (const Case& row : kCases)
+    for (const bool visible : {false, true}) {
+      scenes.push_back(make_scene());
+      row.add(scenes.back().get(), visible);
+      scenes.back()->bind();
+      for (int i = 0; i < gate_share(10, 1000); ++i) asked.push_back({scenes.back().get(), row.effect, visible});
+    }
+  auto by_ours = [](const Asked& a) { return decision(*a.scene, a.effect).on; };
+  auto is_wrong = [](const Asked& a, bool on) { return on != a.visible; };
+  const Answers ours = time_answers(asked, by_ours, is_wrong), flags = time_answers(asked, is_on_by_flags, is_wrong);
+  CHECK(ours.wrong == 0);
+  CHECK(2 * flags.wrong == asked.size());
+  count_beside("by flags", "plan of a small scene", asked.size(), flags, ours);
+  count_hard(asked.size(), ours.wrong, "on if and only if a picture shows it");
 }
 
 // Goal: without the effect, a surface that blends is opaque, also where glass lets light through. Method: a pane of

@@ -4,6 +4,7 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <signal.h>
+#include <sys/ioctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -102,4 +103,28 @@ TEST_CASE("quiet_program_is_heard_only_when_it_aborts") {
     if (aborts) CHECK(WTERMSIG(status) == SIGABRT);
     close(outputs[0]), close(errors[0]);
   }
+}
+
+// Goal: the width is the terminal's, 80 if it has none, and 0 where there is no terminal. Method: a pseudo-terminal of
+// each width as standard output, and a pipe.
+TEST_CASE("standard_streams_know_the_terminals_width") {
+  for (int columns : {0, 57, 132}) {
+    CAPTURE(columns);
+    CHECK(holds_in_child([=] {
+      const int master = posix_openpt(O_RDWR | O_NOCTTY);
+      if (master < 0 || grantpt(master) != 0 || unlockpt(master) != 0) return false;
+      const int terminal = open(ptsname(master), O_RDWR | O_NOCTTY);
+      winsize size = {};
+      size.ws_col = static_cast<unsigned short>(columns);
+      if (ioctl(terminal, TIOCSWINSZ, &size) != 0) return false;
+      dup2(terminal, STDOUT_FILENO);
+      return terminal_columns() == (columns ? columns : 80);
+    }));
+  }
+  CHECK(holds_in_child([] {
+    int ends[2];
+    if (pipe(ends) != 0) return false;
+    dup2(ends[1], STDOUT_FILENO);
+    return terminal_columns() == 0;
+  }));
 }

@@ -160,7 +160,9 @@ TEST_CASE("preparation_of_servers_is_in_their_start") {
     std::uint32_t count;
     std::uint64_t bytes_per_second;
   };
-  for (const auto& [count, bytes_per_second] : {Case{1, 0}, Case{2, 0}, Case{3, 0}, Case{2, 500'000}}) {
+  for (const Case& one : {Case{1, 0}, Case{2, 0}, Case{3, 0}, Case{2, 500'000}}) {
+    const std::uint32_t count = one.count;
+    const std::uint64_t bytes_per_second = one.bytes_per_second;
     if (kEffortDivisor > 6 && count != 2) continue;
     CAPTURE(count);
     CAPTURE(bytes_per_second);

@@ -27,6 +27,18 @@ std::atomic<std::int64_t> progress_due{0};  // milliseconds of the steady clock
 
 const char* line_file() { return std::getenv("POCKETRAY_HARDCASES"); }
 
+double requested_share() {
+  const char* text = std::getenv("POCKETRAY_HARDCASES_SHARE");
+  if (!text || !*text) return 1;
+  char* end;
+  const double share = std::strtod(text, &end);
+  if (*end || !(share > 0 && share <= 1)) {
+    std::fprintf(stderr, "POCKETRAY_HARDCASES_SHARE is '%s': it must lie in (0, 1]\n", text);
+    std::exit(1);
+  }
+  return share;
+}
+
 // Writes the line of each hard case at its end.
 struct GateListener : doctest::IReporter {
   explicit GateListener(const doctest::ContextOptions&) {}
@@ -52,12 +64,12 @@ struct GateListener : doctest::IReporter {
                    b.answer.c_str(), static_cast<unsigned long long>(b.inputs),
                    static_cast<unsigned long long>(b.ordinary.wrong), b.ordinary.seconds,
                    static_cast<unsigned long long>(b.ours.wrong), b.ours.seconds);
-    std::fprintf(file, "\n");
+    std::fprintf(file, "\t%.4g\n", requested_share());
     std::fclose(file);
     std::fprintf(stderr, "\r\033[K");
   }
   static bool is_hard_case() {
-    return whole_gate() &&
+    return line_file() &&
            (running.name.compare(0, 5, "hard_") == 0 || running.name.compare(0, 13, "differential_") == 0);
   }
 
@@ -76,7 +88,12 @@ REGISTER_LISTENER("hard cases", 1, GateListener);
 
 }  // namespace
 
-bool whole_gate() { return line_file() != nullptr; }
+bool whole_gate() { return line_file() && requested_share() == 1; }
+
+int gate_share(int usual, int whole) {
+  if (!line_file()) return effort(usual);
+  return effort(std::max(std::min(usual, whole), static_cast<int>(whole * requested_share())));
+}
 
 void count_hard(std::uint64_t inputs, std::uint64_t wrong, const char* bound) {
   running.inputs += inputs, running.wrong += wrong, running.bound = bound;
@@ -95,7 +112,7 @@ void count_beside(const char* method, const char* answer, std::uint64_t inputs, 
 }
 
 void show_gate_progress(std::uint64_t done, std::uint64_t count) {
-  if (!whole_gate()) return;
+  if (!line_file()) return;
   std::int64_t now = std::chrono::steady_clock::now().time_since_epoch() / std::chrono::milliseconds(1);
   std::int64_t due = progress_due;
   if (now < due || !progress_due.compare_exchange_strong(due, now + 500)) return;

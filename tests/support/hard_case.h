@@ -1,7 +1,8 @@
 // The hard cases (rows of HARDCASES.md) as one gate. A test named hard_NN_… or differential_… counts its inputs and the
-// wrong results. The suite runs a share of the gate. With POCKETRAY_HARDCASES=FILE in the environment, which `make
-// hardcases` sets, all of it runs, with progress on stderr, and each such test appends a line to FILE:
-//   case TAB inputs TAB wrong TAB bound TAB seconds TAB ordinary methods
+// wrong results. With POCKETRAY_HARDCASES=FILE in the environment, which `make hardcases` sets, the gate runs with
+// progress on stderr: all of it, or the share POCKETRAY_HARDCASES_SHARE, in (0, 1]. Each such test appends a line to
+// FILE:
+//   case TAB inputs TAB wrong TAB bound TAB seconds TAB ordinary methods TAB share
 // in which an ordinary method is "method|answer|inputs|wrong|seconds|our wrong|our seconds", with ; between methods.
 #pragma once
 #include <algorithm>
@@ -16,11 +17,12 @@
 
 namespace pocketray {
 
-// Whether the full gate is requested.
+// Whether all of the gate is requested.
 bool whole_gate();
 
-// How many inputs a test tries: `usual` in the suite, `whole` in the gate, fewer of either under emulation.
-inline int gate_share(int usual, int whole) { return effort(whole_gate() ? whole : usual); }
+// How many inputs a test tries: `usual` in the suite, the requested share of `whole` in the gate but not fewer than
+// usual, fewer of either under emulation.
+int gate_share(int usual, int whole);
 
 // Counts inputs of the running test and wrong answers among them; calls accumulate. `bound` describes a correct answer;
 // the last one is kept.

@@ -152,6 +152,13 @@ TEST_CASE("accuracy_measures_every_knob_of_the_scene") {
   }
   CHECK(sixteen < 0.7 * one);
   CHECK(methods == std::set<std::string>{"ambient", "instant-radiosity", "none"});
+  REQUIRE(sweep.quality.size() == 5);
+  for (const LevelPicture& level : sweep.quality) {
+    CAPTURE(level.level);
+    const Measured& row = sweep.measured.at(level.measured_index);
+    CHECK(level.ms == doctest::Approx(row.ns_per_pixel.value * 1e-6 * 32 * 24));
+    CHECK(level.flip == doctest::Approx(row.flip_as[2]));
+  }
 }
 
 // Goal: a frame's time covers all its work. Method: a moving scene with few pixels, so that posing and refitting

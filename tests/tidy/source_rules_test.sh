@@ -86,7 +86,7 @@ must_fail "opens with a back-reference" src/base/a.h "$twenty" "  $(comment_that
 must_pass src/base/a.h "$twenty" "$(comment_that_opens Offset)"
 must_pass tests/base/a_test.cpp "$twenty" "$(comment_that_opens Of)"
 must_pass src/shade/a.cpp '#include "accel/accel.h"' '#include "shade/b.h"' '#include <cmath>'
-must_pass src/app/command_line.cpp '#include <CLI/CLI.hpp>'
+must_pass src/app/command_parse.cpp '#include <CLI/CLI.hpp>'
 must_pass src/app/a.cpp '#include "platform/platform.h"' '#include <vector>' 'auto p = new std::vector<int>; throw std::pow(1, 2);'
 must_pass src/desktop/accuracy/a.cpp '#include "present/pack.h"' '#include <vector>' 'double x = std::pow(a, b);'
 must_fail "(rank 6) must not include engine/frame.h (rank 7)" src/desktop/accuracy/a.cpp '#include "engine/frame.h"'

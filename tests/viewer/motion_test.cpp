@@ -104,7 +104,7 @@ std::uint32_t finished_while_held(double ns_per_pixel) {
   stage.leave(3);
   stage.open("cube");
   OpenScene opened;
-  Stage::load("cube", "off", &opened);
+  stage.load("cube", "off", &opened);
   opened.renderer.pace.ns_per_pixel = ns_per_pixel;
   opened.renderer.pace.clock = &kScreenClock;
   bool again;

@@ -2,6 +2,7 @@
 #pragma once
 #include <doctest/doctest.h>
 
+#include <cstdlib>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,8 @@ struct Stage {
   std::vector<platform::Event> script;
   std::vector<std::uint32_t> screen = std::vector<std::uint32_t>(kWidth * kHeight);
   Viewer viewer;
+  QualityDial dial;
+  std::string memory = "64M", quality;
   int rotation = 0, bits_per_pixel = 32;
   bool dither = false;
   static constexpr int kWidth = 320, kHeight = 60;
@@ -44,13 +47,14 @@ struct Stage {
   }
   int screen_width() const { return rotation % 180 ? kHeight : kWidth; }
   int screen_height() const { return rotation % 180 ? kWidth : kHeight; }
-  static void load(const char* scene, const char* coherence, OpenScene* opened) {
+  void load(const char* scene, const char* coherence, OpenScene* opened) {
+    setenv("XDG_CACHE_HOME", "/dev/null", 1);  // no fronts
     CommonOptions common;
     common.scene = scene, common.size = "320x60", common.threads = 1, common.coherence = coherence;
-    OpenHooks hooks;
-    hooks.output_bytes = viewer_bytes;
-    REQUIRE(open_scene(common, hooks, opened).ok);
-    REQUIRE(start_scene(opened, common).ok);
+    common.memory = memory, common.quality = quality;
+    const Status status = open_scene_with_dial(common, viewer_bytes, opened, &dial);
+    REQUIRE_MESSAGE(status.ok, status.message);
+    viewer.dial = &dial;
   }
   // Shows a built-in scene; true if a reload is due.
   bool show(const char* scene, OpenScene* opened, const char* coherence = "off") {

@@ -145,7 +145,7 @@ TEST_CASE("viewer_shows_what_coherence_saves") {
     Stage stage;
     stage.open("seesaw");
     OpenScene opened;
-    Stage::load("seesaw", coherent ? "on" : "off", &opened);
+    stage.load("seesaw", coherent ? "on" : "off", &opened);
     Renderer* renderer = &opened.renderer;
     ViewerLoop loop;
     loop.tile_spans = arena_array<Span>(&renderer->memory.frame, progressive_spans_max(renderer->settings));

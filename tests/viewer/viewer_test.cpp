@@ -83,8 +83,8 @@ TEST_CASE("viewer_answers_each_button") {
   } kAnswers[] = {{platform::Button::screenshot, std::string("saved ") + folder + "/pocketray-0001.p"},
                   {platform::Button::side_by_side, "V shows "},
                   {platform::Button::animation, "nothing moves"},
-                  {platform::Button::finer, "--budget-ms"},
-                  {platform::Button::faster, "--budget-ms"}};
+                  {platform::Button::finer, "quality high: "},
+                  {platform::Button::faster, "quality low: "}};
   for (const auto& row : kAnswers) {
     for (bool soon : {true, false}) {
       CAPTURE(row.answer);
@@ -148,6 +148,8 @@ TEST_CASE("viewer_keeps_the_camera") {
       Stage stage;
       if (moved) stage.press(1, platform::Button::right), stage.press(2, platform::Button::right, false);
       stage.press(2.5, platform::Button::select);
+      stage.press(2.6, platform::Button::select, false);
+      stage.press(2.7, platform::Button::finer);
       stage.press(3, platform::Button::reload);
       stage.leave(4);
       stage.open("seesaw");
@@ -219,7 +221,7 @@ TEST_CASE("viewer_goes_back_to_the_scenes_own_view") {
     stage.leave(2);
     stage.open(scene);
     OpenScene opened;
-    Stage::load(scene, "off", &opened);
+    stage.load(scene, "off", &opened);
     const Camera own = opened.renderer.view.camera;
     bool again;
     REQUIRE(run_viewer(&stage.viewer, &opened.renderer, &again).ok);
@@ -321,6 +323,70 @@ TEST_CASE("viewer_refines_what_rests") {
       CHECK(same_quality(last, some));
     }
   }
+}
+
+namespace {
+
+struct DialEnd {
+  Settings settings;
+  std::string note;
+  std::size_t memory;
+  KeptView kept;
+};
+
+// Presses, at most one every half second, and what they lead to when the scene is reloaded after them.
+DialEnd after_presses(const std::vector<std::pair<platform::Button, bool>>& presses, const char* memory = "64M",
+                      bool shared = false) {
+  Stage stage;
+  stage.memory = memory;
+  double seconds = 0;
+  for (const auto& press : presses) stage.press(seconds += 0.5, press.first, press.second);
+  stage.press(seconds + 1, platform::Button::reload);
+  stage.leave(seconds + 2);
+  stage.open("cube");
+  OpenScene opened, reloaded;
+  stage.load("cube", "off", &opened);
+  if (shared) stage.viewer.dial = nullptr;
+  bool again;
+  REQUIRE(run_viewer(&stage.viewer, &opened.renderer, &again).ok);
+  REQUIRE(again);
+  DialEnd end = {opened.renderer.settings, stage.viewer.note.text, opened.renderer.memory.plan.total_bytes,
+                 stage.viewer.kept};
+  stage.viewer.reload = false;
+  stage.show("cube", &reloaded);
+  CHECK(same_quality(reloaded.renderer.settings, end.settings));
+  return end;
+}
+
+}  // namespace
+
+// Goal: + and − turn the dial, which stops at its ends; so do select with up and down, which then neither moves the
+// camera nor changes its mode; a reload keeps the quality; a level without memory is refused. Method: presses, and the
+// settings they lead to.
+TEST_CASE("viewer_turns_the_dial") {
+  using platform::Button;
+  const Button finer = Button::finer, faster = Button::faster;
+  const Quality medium, low = builtin_level(QualityLevel::low, EffectMask(0));
+  const Quality high = after_presses({{finer, true}}).settings,
+                best = after_presses({{finer, true}, {finer, true}}).settings;
+  CHECK(high.samples_per_pixel == 4);
+  CHECK(best.samples_per_pixel == 16);
+  const DialEnd beyond = after_presses({{finer, true}, {finer, true}, {finer, true}});
+  CHECK(same_quality(beyond.settings, best));
+  CHECK(beyond.note == "best is the highest quality");
+  CHECK(same_quality(after_presses({{finer, true}, {faster, true}}).settings, medium));
+  CHECK(after_presses({{faster, true}}).settings.points_per_area_light == low.points_per_area_light);
+  const DialEnd combined =
+      after_presses({{Button::select, true}, {Button::up, true}, {Button::up, false}, {Button::select, false}});
+  CHECK(same_quality(combined.settings, high));
+  CHECK(combined.kept.control.mode == CameraMode::orbit);
+  CHECK(!combined.kept.camera_moved);
+  CHECK(after_presses({{finer, true}}, "64M", true).note ==
+        "+ and - change the quality, but not of frames shared with servers");
+  const std::string tight = std::to_string(after_presses({}).memory - 1000);
+  const DialEnd refused = after_presses({{finer, true}, {finer, true}}, tight.c_str());
+  CHECK(same_quality(refused.settings, medium));
+  CHECK(refused.note == "quality high needs more memory than was planned: raise --memory");
 }
 
 // Goal: a viewer that nobody touches wakes rarely, shows nothing, and answers soon all the same. Method: count the

@@ -44,6 +44,7 @@ int lead(AccuracyOptions options) {
               sweep.judge == Judge::truth;
   if (kept) {
     Status written = cache_front(front.path, front.front);
+    if (written.ok) written = cache_front(front.prices_path, prices_alone(front.front));
     kept = written.ok;
     if (!kept) std::fprintf(stderr, "pocketray: %s; prices are not kept\n", written.message);
   }
@@ -77,53 +78,71 @@ int run(const AccuracyOptions& options) {
 void add_accuracy_command(Command program, const Team& team, int* exit_status) {
   auto o = std::make_shared<AccuracyOptions>();
   o->team = team;
-  Command command = program.add_subcommand("accuracy", "measure the time cost of accuracy: sweep every setting");
-  command.footer(
-      "Varies one setting at a time (samples, depth, points per area light, …), then several at once, "
-      "then the settings\n"
-      "of each method of indirect light. Times each configuration in rounds of random order and compares its picture\n"
-      "with two references, path traced in double precision: full light transport, which is the truth, and the\n"
-      "renderer's own lighting model, converged, which shows the numerical error of samples, points and cut-offs\n"
-      "alone. ꟻLIP is how different two pictures look when one flips between them: .01 is hard to see, .05 seen at\n"
-      "once, .2 another picture. The front for --budget-ms and --flip-max follows the truth.\n"
-      "The scene's options set the baseline. The output folder gets index.html with all results, its plots and\n"
-      "strips, accuracy.csv and the references, which are also kept per scene and camera in the cache. If\n"
-      "interrupted, samples of references and finished rounds are kept, and the same command continues. Times are of\n"
-      "whole frames (pose, refit, lights, tracing, packing) after a warm-up frame with the same settings;\n"
-      "\"arithmetic double\" is timed with the reference's own tracer. Under `mpirun`, in a build with MPI, all ranks\n"
-      "take samples of references, and only rank 0 is timed.\n"
-      "Confidence intervals are 95 %, given at least six rounds.");
+  Command command = program.add_subcommand("accuracy", "measure what accuracy costs in time, setting by setting");
   add_scene_options(command, &o->common);
   add_look_options(command, &o->common);
-  command.add_option("-o,--output", o->folder, "folder to write to; created if missing").required();
-  command
-      .add_option("--pixel-format", o->output,
-                  "pixel format of the baseline's screen: rgb565, rgb565-dithered or rgb888")
+  command.chapter("Animation");
+  command.add_option("--time SECONDS", o->seconds, "seconds into the animation")
+      .range(-kSecondsMax, kSecondsMax)
+      .capture_default_str();
+  command.chapter("Measurement");
+  command.add_option("--rounds N", o->rounds, "measurements of each configuration")
+      .range(1, 1000)
       .capture_default_str();
   command
-      .add_option(
-          "--reference", o->reference,
-          "judge of the front: physical (full light transport), model (the same lighting model, converged) or a file "
-          "of `pocketray reference`")
-      .capture_default_str();
-  command.add_option("--reference-samples", o->reference_samples, "samples per pixel of the judge's reference")
-      .default_str("2048 for model, 256 for physical");
-  command.add_option("--rounds", o->rounds, "number of times to measure each configuration").capture_default_str();
-  command.add_option("--pixels-per-degree,--ppd", o->pixels_per_degree, "pixels per degree of visual angle, for ꟻLIP")
-      .capture_default_str();
-  command.add_option("--time", o->seconds, "seconds into the animation").capture_default_str();
-  command
-      .add_option("--price-limit", o->price_limit,
+      .add_option("--price-limit X", o->price_limit,
                   "slowest combination of settings to try, as a multiple of the baseline's time")
+      .range(1, 1e6)
       .capture_default_str();
-  command.add_flag("--count-instructions", o->starts_valgrind,
-                   "count instructions with valgrind where the CPU does not: a minute or more, hours with many lights");
-  command.add_flag("--bake-choices", o->bakes,
-                   "also bake the scene with other --textures, --texture-max, without mip maps, and with "
-                   "--radiosity of few to many patches: what each saves and errs. Says first how long the bakes take");
-  command.add_flag("--restart", o->restart, "discard the measurements in the folder and start over");
+  command.add_flag("--count-instructions", o->starts_valgrind, "count instructions with valgrind")
+      .details("Where the CPU does not count them; takes a minute or more, with many lights hours.");
+  command.add_flag("--bake-choices", o->bakes, "also bake the scene otherwise and measure that")
+      .details(
+          "Bakes it with other --textures and --texture-max, without mip maps, and with --radiosity of "
+          "few to many patches: time, bytes and error of each. Says first how long the bakes take.");
+  command.add_flag("--restart", o->restart, "discard the folder's measurements and start over");
+  command.chapter("Reference");
+  command.add_option("--reference WHAT", o->reference, "judge: physical, model or a FILE")
+      .capture_default_str()
+      .details(
+          "physical is full light transport, model the renderer's own lighting model, converged, FILE a picture of "
+          "`pocketray reference`.");
+  command.add_option("--reference-samples N", o->reference_samples, "samples per pixel of the judge")
+      .range(2, 1e6)
+      .default_str("256; model: 2048");
+  command.chapter("Output");
+  command.add_option("-o,--output DIR", o->folder, "folder for the page, plots and tables").required();
+  command.add_option("--pixel-format NAME", o->output, "pixels of the baseline's screen")
+      .one_of({"rgb565", "rgb565-dithered", "rgb888"})
+      .capture_default_str();
+  command.add_option("--pixels-per-degree,--ppd X", o->pixels_per_degree, "pixels per degree of visual angle, for ꟻLIP")
+      .range(1, 1000)
+      .capture_default_str();
   add_json_option(command, &o->common.json);
-  command.add_option("--counting-folder", o->counting_folder, "").group("");  // for the run under valgrind
+  command.add_option("--counting-folder DIR", o->counting_folder, "for the run under valgrind").hidden();
+  command.everyday("Output", {"--output", "--json"});
+  command.everyday("Picture", {"--size", "--camera", "--time"});
+  command.everyday("Reference", {"--reference", "--reference-samples"});
+  command.everyday("Measurement", {"--rounds", "--threads", "--bake-choices", "--restart"});
+  command.example("pocketray accuracy cornell -o DIR");
+  command.about(
+      "Varies one setting at a time (samples, depth, points per area light, …), then several at once, then the "
+      "settings "
+      "of each method of indirect light. Times each configuration in rounds of random order and compares its picture "
+      "with two references, path traced in double precision: full light transport, which is the truth, and the "
+      "renderer's own lighting model, converged, which shows the numerical error of samples, points and cut-offs "
+      "alone. "
+      "ꟻLIP is how different two pictures look when one flips between them: .01 is hard to see, .05 seen at once, .2 "
+      "another picture. The front for --budget-ms and --flip-max follows the truth.");
+  command.about(
+      "The scene's options set the baseline. The output folder gets index.html with all results, its plots and strips, "
+      "accuracy.csv and the references, which are also kept per scene and camera in the cache. If interrupted, samples "
+      "of references and finished rounds are kept, and the same command continues.");
+  command.about(
+      "Times are of whole frames (pose, refit, lights, tracing, packing) after a warm-up frame with the same settings; "
+      "\"arithmetic double\" is timed with the reference's own tracer. Confidence intervals are 95 %, given at least "
+      "six "
+      "rounds. Under `mpirun`, in a build with MPI, all ranks take samples of references, and only rank 0 is timed.");
   command.callback([=] {
     o->common.output_folder = o->folder;
     *exit_status = run(*o);

@@ -185,34 +185,38 @@ int run(const ReportOptions& o) {
 
 void add_coherence_report_command(Command program, int* exit_status) {
   auto o = std::make_shared<ReportOptions>();
-  Command command = program.add_subcommand("coherence-report", "measure the savings from retracing only what changed");
-  command.footer(
-      "Renders a sequence twice, frame by frame and by tracing only the pixels that can differ from the last frame, "
-      "and\n"
-      "compares every bit of every frame: a difference is an error. Prints rays and time of both, next to Table 2 of\n"
-      "Jevans 1992 if the scene is seesaw, which follows its sequence. Then does the same the paper's way, with a "
-      "table\n"
-      "of rays in every voxel. --compare adds two methods that look only at pixels and miss changes, Badt 1988 and\n"
-      "Chapman 1990: pixels traced, time, wrong pixels and FLIP, as a table and plots beside ours.\n"
-      "If interrupted, keeps the finished frames.\n"
-      "Try:  pocketray coherence-report seesaw -o report\n"
-      "      pocketray coherence-report seesaw --frames 0:40 --size 640x480 --no-paper --json -");
+  Command command = program.add_subcommand("coherence-report", "measure what retracing only what changed saves");
   add_scene_options(command, &o->common);
   add_look_options(command, &o->common);
-  command.add_option("-o,--output", o->folder,
-                     "folder for index.html with plots and pictures, report.json and frames.csv; created if missing");
-  command.add_option("--frames", o->frames, "frames to render, FIRST:LAST; the first is traced whole")
-      .default_str("the whole animation");
-  command
-      .add_option("--table", o->table,
-                  "blocks of pixels along each side of the picture, each with a bit in every voxel's table of rays")
-      .range(1u, kCoherenceTableSideMax)
-      .capture_default_str();
-  command.add_flag("--no-paper", o->no_paper, "skip rendering the sequence the paper's way");
-  command.add_flag("--sweep-table", o->sweep_table,
-                   "also measure sides from 1 to 128: memory, time and pixels traced; no side changes a picture");
+  command.chapter("Measurement");
+  command.add_option("--frames A:B", o->frames, "frames to render; the first is traced whole").default_str("all");
+  command.add_option("--table N", o->table, "pixel blocks per side in each voxel's table")
+      .range(1, kCoherenceTableSideMax)
+      .capture_default_str()
+      .details("Each block has a bit in every voxel's table of rays.");
+  command.add_flag("--no-paper", o->no_paper, "skip the paper's way, which takes half of the time");
+  command.add_flag("--sweep-table", o->sweep_table, "also measure tables of 1 to 128 blocks a side")
+      .details("Their memory, time and pixels traced; the pictures are equal.");
   command.add_flag("--compare", o->compare, "also run the image-space methods of Badt and Chapman");
+  command.chapter("Output");
+  command.add_option("-o,--output DIR", o->folder, "folder for the page, plots and tables")
+      .details("index.html with plots and pictures, report.json and frames.csv. Created if missing.");
   add_json_option(command, &o->common.json);
+  command.everyday("Output", {"--output", "--json"});
+  command.everyday("Picture", {"--size", "--threads"});
+  command.everyday("Measurement", {"--frames", "--no-paper", "--table", "--sweep-table", "--compare"});
+  command.example("pocketray coherence-report seesaw -o report");
+  command.example("pocketray coherence-report seesaw --frames 0:40 --no-paper --json -");
+  command.about(
+      "Renders a sequence twice, frame by frame and by tracing only the pixels that can differ from the last frame, "
+      "and "
+      "compares every bit of every frame: a difference is an error. Prints rays and time of both, next to Table 2 of "
+      "Jevans 1992 if the scene is seesaw, which follows its sequence. Then does the same the paper's way, with a "
+      "table "
+      "of rays in every voxel. --compare adds two methods that look only at pixels and miss changes, Badt 1988 and "
+      "Chapman 1990: pixels traced, time, wrong pixels and ꟻLIP, as a table and plots beside ours. If interrupted, "
+      "keeps "
+      "the finished frames.");
   command.callback([=] {
     o->common.output_folder = o->folder;
     *exit_status = run(*o);

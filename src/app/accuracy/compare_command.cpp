@@ -127,40 +127,48 @@ Status run(const CompareOptions& o) {
 void add_compare_command(Command program, int* exit_status) {
   auto o = std::make_shared<CompareOptions>();
   Command command = program.add_subcommand("compare", "measure how different two pictures look");
-  command.footer(
-      "Prints the mean ꟻLIP (Andersson et al. 2020), 0 for equal pictures and at most 1; RMSE and PSNR of the values "
-      "as\n"
-      "displayed, 1 being white; the largest difference of a channel; and the number of pixels that differ. PSNR is\n"
-      "infinite for equal pictures (JSON: null). Alpha is ignored, and 16-bit PNGs are compared as 8 bits. The map\n"
-      "shows ꟻLIP from black (0) through violet and orange to light yellow (1), in the perceptually even colours of\n"
-      "magma.\n"
-      "Two pictures of linear light, .pfm or .exr, are also compared in that: RMSE, relative MSE and bias, above 0 if "
-      "B\n"
-      "is too bright. Beside .png, .jpg or .ppm, linear light is first exposed: --align finds the\n"
-      "exposure of a picture by `render`.\n"
-      "Try:  pocketray compare expected.png out.png --map map.png --fail-above 0.01\n"
-      "      pocketray compare reference.pfm out.exr --align");
   command.add_option("A", o->reference, "the reference: .png, .jpg, .ppm, .pfm or .exr").required();
-  command.add_option("B", o->test, "the picture to judge, of the same size").required();
-  command.add_option("-o,--map,--output", o->map, "also write the ꟻLIP map, .png");
-  command
-      .add_option(
-          "--exposure", o->exposure,
-          "stops to expose linear light by; auto: the geometric mean of A (or B if only that is linear) becomes "
-          "middle grey")
-      .default_str("0, radiance 1 is white");
-  command.add_flag("--align", o->align,
-                   "scale the light of B to be as close to A as possible, or find the exposure of the one linear "
-                   "picture; print the factor");
-  command.add_option("--fail-above", o->fail_above, "exit with status 1 if the mean ꟻLIP exceeds this")
-      .range(0.0, 1.0)
+  command.add_option("B", o->test, "the picture to judge, of equal size").required();
+  command.chapter("Comparison");
+  command.add_option("--exposure STOPS", o->exposure, "exposure of linear light in stops, or auto")
+      .default_str("0")
+      .details(
+          "Of light in .pfm and .exr; 0 stops make radiance 1 white. auto makes the geometric mean of A, or of B if "
+          "only that "
+          "is "
+          "linear, middle grey.");
+  command.add_flag("--align", o->align, "scale the light of B to match A, and print the factor")
+      .details("Of a single linear picture, finds the exposure.");
+  command.add_option("--pixels-per-degree,--ppd X", o->pixels_per_degree, "pixels per degree of visual angle")
+      .range(4, 400)
+      .default_str("23.6")
+      .details("23.6 is a handheld's; 67 is usual for desktops.");
+  command.chapter("Output");
+  command.add_option("-o,--map,--output FILE", o->map, "write a picture of the ꟻLIP, .png");
+  command.add_option("--fail-above X", o->fail_above, "exit with status 1 if the mean ꟻLIP exceeds X")
+      .range(0, 1)
       .default_str("never");
-  command
-      .add_option("--pixels-per-degree,--ppd", o->pixels_per_degree,
-                  "viewing resolution: pixels per degree of visual angle")
-      .range(4.0, 400.0)
-      .default_str("23.6, a handheld's; 67 is usual for desktops");
   add_json_option(command, &o->json);
+  command.everyday("Output", {"--map", "--fail-above", "--json"});
+  command.everyday("Comparison", {"--exposure", "--align", "--pixels-per-degree"});
+  command.footer(
+      "ꟻLIP is how different two pictures look: 0 for equal ones, .01 is hard to see,\n.05 seen at once, .2 another "
+      "picture.");
+  command.example("pocketray compare expected.png out.png --map map.png --fail-above 0.01");
+  command.example("pocketray compare reference.pfm out.exr --align");
+  command.about(
+      "Prints the mean ꟻLIP (Andersson et al. 2020), 0 for equal pictures and at most 1; RMSE and PSNR of the values "
+      "as "
+      "displayed, 1 being white; the largest difference of a channel; and the number of pixels that differ. PSNR is "
+      "infinite for equal pictures (JSON: null). Alpha is ignored, and 16-bit PNGs are compared as 8 bits. The map "
+      "shows "
+      "ꟻLIP from black (0) through violet and orange to light yellow (1), in the perceptually even colours of magma.");
+  command.about(
+      "Two pictures of linear light, .pfm or .exr, are also compared in that: RMSE, relative MSE and bias, above 0 if "
+      "B "
+      "is too bright. Beside .png, .jpg or .ppm, linear light is first exposed: --align finds the exposure of a "
+      "picture "
+      "by `render`.");
   command.callback([=] { *exit_status = report(run(*o)); });
 }
 

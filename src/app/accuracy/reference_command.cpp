@@ -145,36 +145,47 @@ void add_reference_command(Command program, const Team& team, int* exit_status) 
   auto c = std::make_shared<ReferenceCommand>();
   c->goal.team = team;
   Command command = program.add_subcommand("reference", "render a reference picture to judge others by");
-  command.footer(
-      "Traces paths in double precision and adds them up in a .pfm file: a picture of linear light, followed by the\n"
-      "sums. The file is saved every minute and when interrupted; the same command continues it. Runs on several\n"
-      "machines take one part each, and --merge adds their files; the result equals that of one run, bit for bit.\n"
-      "Two halves of the samples are independent, and their difference gives the error: as ꟻLIP and RMSE, and per\n"
-      "region. Cornell's sphere has 256 columns here, as in the references of `accuracy`. A build with MPI shares the\n"
-      "samples among the ranks of `mpirun -n 8 pocketray reference …`, with the same result.\n"
-      "Try:  pocketray reference cornell -o cornell.pfm --until 0.02\n"
-      "      pocketray accuracy cornell -o DIR --reference cornell.pfm");
   add_view_options(command, &c->options.common);
   add_look_options(command, &c->options.common);
-  command.add_option("-o,--output", c->goal.path, "file to write or to continue, .pfm").required();
-  command
-      .add_option("--kind", c->kind,
-                  "model (the renderer's lighting model, converged) or physical (full light transport)")
+  command.chapter("Animation");
+  command.add_option("--time SECONDS", c->options.seconds, "seconds into the animation")
+      .range(-kSecondsMax, kSecondsMax)
+      .capture_default_str();
+  command.chapter("Samples");
+  command.add_option("--kind NAME", c->kind, "light transport")
       .one_of({"model", "physical"})
-      .capture_default_str();
-  command.add_option("--samples", c->goal.samples, "samples per pixel, of all parts together")
-      .range(2u, kReferenceHalfCount * kReferenceSampleMax)
-      .default_str("2048 for model, 256 for physical, none with --until");
-  command.add_option("--until", c->goal.until, "stop when the reference's own error, as ꟻLIP, is at most this")
-      .range(1e-6, 1.0);
-  command.add_option("--part", c->part, "take only part K of N of the samples, K/N");
-  command.add_option("--merge", c->merged, "add the samples of another file").allow_extra_args(true);
+      .capture_default_str()
+      .details("model: the renderer's lighting model, converged. physical: full light transport.");
+  command.add_option("--samples N", c->goal.samples, "samples per pixel, of all parts")
+      .range(2, kReferenceHalfCount * kReferenceSampleMax)
+      .default_str("256; model: 2048")
+      .details("With --until, there is no limit unless this option sets one.");
+  command.add_option("--until X", c->goal.until, "stop when its own error is ꟻLIP X or less").range(1e-6, 1);
+  command.add_option("--part K/N", c->part, "take only part K of N of the samples");
+  command.add_option("--merge FILE", c->merged, "add the samples of other files");
   command
-      .add_option("--pixels-per-degree,--ppd", c->goal.pixels_per_degree, "pixels per degree of visual angle, for ꟻLIP")
-      .range(1.0, 1000.0)
+      .add_option("--pixels-per-degree,--ppd X", c->goal.pixels_per_degree,
+                  "pixels per degree of visual angle, for ꟻLIP")
+      .range(1, 1000)
       .capture_default_str();
-  command.add_option("--time", c->options.seconds, "seconds into the animation").capture_default_str();
+  command.chapter("Output");
+  command.add_option("-o,--output FILE", c->goal.path, "file to write or to continue, .pfm").required();
   add_json_option(command, &c->options.common.json);
+  command.everyday("Output", {"--output", "--json"});
+  command.everyday("Picture", {"--size", "--camera", "--time", "--environment"});
+  command.everyday("Samples", {"--kind", "--samples", "--until", "--part", "--merge", "--threads"});
+  command.example("pocketray reference cornell -o cornell.pfm --until 0.02");
+  command.example("pocketray accuracy cornell -o DIR --reference cornell.pfm");
+  command.about(
+      "Traces paths in double precision and adds them up in a .pfm file: a picture of linear light, followed by the "
+      "sums. "
+      "The file is saved every minute and when interrupted; the same command continues it. Runs on several machines "
+      "take "
+      "one part each, and --merge adds their files; the result equals that of one run, bit for bit. Two halves of the "
+      "samples are independent, and their difference gives the error: as ꟻLIP and RMSE, and per region.");
+  command.about(
+      "Cornell's sphere has 256 columns here, as in the references of `accuracy`. A build with MPI shares the samples "
+      "among the ranks of `mpirun -n 8 pocketray reference …`, with the same result.");
   command.callback([=] {
     c->options.common.outputs = {{"--output", c->goal.path}};
     *exit_status = run(*c);

@@ -16,7 +16,7 @@ int run(const std::string& path) {
     return report(failure("this system has no random bytes yet: try again later"));
   bool ok = platform::create_key_file(path.c_str(), key, &error);
   platform::wipe(&key, sizeof key);
-  if (!ok) return report(failure("%.200s: %s", path.c_str(), error.text));
+  if (!ok) return report(failure("-o %.200s: %s", path.c_str(), error.text));
   std::printf("%s: copy it to the server and to the device, and give it to `serve` and beside --server: --key %s\n",
               shown(path).c_str(), shown(path).c_str());
   return kExitDone;
@@ -26,11 +26,12 @@ int run(const std::string& path) {
 
 void add_keygen_command(Command program, int* exit_status) {
   auto path = std::make_shared<std::string>("pocketray.key");
-  Command command = program.add_subcommand("keygen", "make a key that encrypts links between devices and servers");
-  command.add_option("-o", *path, "file to write; one that exists is never overwritten").capture_default_str();
-  command.footer(
+  Command command = program.add_subcommand("keygen", "make a key that encrypts links to render servers");
+  command.chapter("Output");
+  command.add_option("-o,--output FILE", *path, "file to write, unless it exists").capture_default_str();
+  command.about(
       "The file has one line, pocketray-key-1: and 64 hexadecimal digits: 256 random bits. Whoever has them can use "
-      "the\n"
+      "the "
       "server and read what it sends, so its mode is 0600; copy it by a way that you trust, such as scp or a card.");
   command.callback([=] { *exit_status = run(*path); });
 }

@@ -60,9 +60,11 @@ void add_scenes_command(Command program, int* exit_status) {
   add_server_option(command, &o->servers.addresses).required();
   add_key_option(command, &o->servers.key);
   add_json_option(command, &o->json);
-  command.footer(
-      "Pass any of these names to `render` or `view` with the same --server. They fetch the scene, or leave it to the\n"
+  command.about(
+      "Pass any of these names to `render` or `view` with the same --server. They fetch the scene, or leave it to the "
       "server if it does not fit in --memory.");
+  command.everyday("Servers", {"--server", "--key", "--json"});
+  command.example("pocketray scenes --server 127.0.0.1:7411");
   command.callback([=] { *exit_status = run(*o); });
 }
 

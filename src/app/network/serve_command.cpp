@@ -71,9 +71,8 @@ Status find_address(const ServeOptions& o, platform::LinkAddress* address) {
   if (!platform::kTcpLink.resolve(o.listen.c_str(), address, &error)) return failure("--listen: %s", error.text);
   if (address->loopback || o.insecure_lan || !o.key.empty()) return success();
   return failure(
-      "--listen %s is open to other machines and there is no authentication: anyone who reaches the port can use the "
-      "CPU and see the scenes. Give both sides a key (`pocketray keygen`, --key), listen on 127.0.0.1:7411 and connect "
-      "through an SSH tunnel, or trust the network with --insecure-lan",
+      "--listen %.60s: other machines can reach it and there is no authentication: add --key (`pocketray keygen`), or "
+      "--insecure-lan",
       o.listen.c_str());
 }
 
@@ -214,43 +213,48 @@ int run(const ServeOptions& o, ServeOnRanks on_ranks) {
 void add_serve_command(Command program, const Team& team, ServeOnRanks on_ranks, int* exit_status) {
   auto o = std::make_shared<ServeOptions>();
   o->team = team;
-  Command command = program.add_subcommand(
-      "serve", "run a render server that traces part of each frame for devices; under mpirun, on all ranks");
-  command
-      .add_option("--listen", o->listen,
-                  "HOST:PORT to listen on; port 0 takes any free one; addresses that other machines can reach need "
-                  "--key or --insecure-lan")
-      .capture_default_str();
+  Command command = program.add_subcommand("serve", "run a render server for devices");
+  command.chapter("Link");
+  command.add_option("--listen HOST:PORT", o->listen, "address; port 0: any free one")
+      .capture_default_str()
+      .details(
+          "Addresses that other machines can reach need --key or --insecure-lan: otherwise anyone who reaches the port "
+          "could use the CPU and see the scenes. Instead, 127.0.0.1 can be reached through an SSH tunnel.");
   Option key = add_key_option(command, &o->key);
-  command
-      .add_flag("--insecure-lan", o->insecure_lan,
-                "allow addresses that other machines can reach; there is no authentication")
-      .excludes(key);
-  command.add_option(
-      "--scenes", o->scenes,
-      "folder of scenes to offer besides the built-in ones, without its subfolders: .pray files and, on a desktop, "
-      "models");
-  command.add_option("--threads", o->threads, "tracing threads of each rank, shared by all clients; 0: one per core")
-      .capture_default_str();
-  command
-      .add_option("--clients", o->clients, "maximum number of clients; further ones are told that the server is busy")
+  command.chapter("Link");
+  command.add_flag("--insecure-lan", o->insecure_lan, "serve other machines without a key")
+      .details("Everyone who reaches the port can then use the CPU and see the scenes.")
+      .excludes(key, "a key authenticates clients");
+  command.chapter("Scenes and clients");
+  command.add_option("--scenes DIR", o->scenes, "folder of scenes to offer besides the built-in ones")
+      .details("Its .pray files and, on a desktop, models; not its subfolders.");
+  command.add_option("--clients N", o->clients, "clients at a time; others are told to wait")
       .range(1, kServerClientsMax)
       .capture_default_str();
-  command.add_option("--memory", o->memory, "memory per client, for its picture and for rendering, e.g. 64M")
+  command.add_option("--size-max N", o->image_side_max, "longest picture side in pixels")
+      .range(1, kImageSideMax)
       .capture_default_str();
-  command.add_option("--scene-memory", o->scene_memory, "memory for all scenes together, e.g. 1G")
+  command.add_option("--idle SECONDS", o->idle_seconds, "silence after which a client is dropped")
+      .range(1, 1e6)
       .capture_default_str();
-  command.add_option("--size-max", o->image_side_max, "longest picture side in pixels")
-      .range(1u, kImageSideMax)
-      .capture_default_str();
-  command.add_option("--idle", o->idle_seconds, "seconds of silence before a client is disconnected")
-      .capture_default_str();
-  command
-      .add_option("--coherence", o->coherence,
-                  "trace only what may have changed since a client's last frame: on, off, or auto, if it pays off and "
-                  "its memory allows it")
-      .capture_default_str();
+  command.add_option("--coherence WHEN", o->coherence, "trace only what changed since a client's last frame")
+      .one_of({"off", "auto", "on"})
+      .capture_default_str()
+      .details("auto: if it pays off and the client's memory allows it.");
+  command.chapter("Machine");
+  command.add_option("--threads N", o->threads, "threads that trace; 0: one per core")
+      .range(0, kThreadCountMax)
+      .capture_default_str()
+      .details("Of each rank, shared by all clients.");
+  command.add_option("--memory SIZE", o->memory, "memory per client, for pictures and rendering").capture_default_str();
+  command.add_option("--scene-memory SIZE", o->scene_memory, "memory for all scenes together").capture_default_str();
   add_isa_option(command, &o->isa);
+  command.everyday("Link", {"--listen", "--key", "--insecure-lan"});
+  command.everyday("Scenes and clients", {"--scenes", "--clients", "--size-max"});
+  command.everyday("Machine", {"--threads", "--memory", "--scene-memory"});
+  command.example("pocketray serve --scenes DIR");
+  command.example("pocketray keygen && pocketray serve --listen 0.0.0.0:7411 --key pocketray.key");
+  command.about("Traces part of each frame for devices that name it with --server; under `mpirun`, on all ranks.");
   command.callback([=] { *exit_status = run(*o, on_ranks); });
 }
 

@@ -352,47 +352,50 @@ int run(const ReportOptions& o) {
 void add_split_report_command(Command program, int* exit_status) {
   auto o = std::make_shared<ReportOptions>();
   o->common.emulate = "tablet";
-  Command command = program.add_subcommand(
-      "split-report",
-      "measure the speed-up by render servers against the device's share of the rows, its energy and bytes, and how "
-      "many devices share a server");
-  command.footer(
-      "Device, link and servers are simulated on a virtual clock, so you need not start any. A busy machine affects "
-      "only\n"
-      "the measured cost per pixel, unless --device-ns and --server-ns give it, and the fraction of it that a\n"
-      "pixel without indirect light costs.\n"
-      "Try:  pocketray split-report cornell --emulate pi-zero -o .\n"
-      "      pocketray split-report statue --emulate tablet --servers 3 --json -");
+  Command command = program.add_subcommand("split-report", "measure what sharing frames with servers gains");
   add_scene_options(command, &o->common);
+  command.get_option("--emulate").capture_default_str();
   add_coherence_options(command, &o->common, "off");
-  command.add_option("--servers", o->server_count, "number of servers")
-      .range(1u, kServerCountMax)
+  command.chapter("Simulation");
+  command.add_option("--servers N", o->server_count, "number of servers")
+      .range(1, kServerCountMax)
       .capture_default_str();
-  command.add_option("-o,--output", o->folder,
-                     "folder for split.csv, fronts.csv and, if gnuplot is installed, split.png and fronts.png; created "
-                     "if missing");
-  command
-      .add_option("--steps", o->step_count,
-                  "number of shares to measure, from 0 to 1; a few more are added around the fastest")
-      .range(2u, 1000u)
+  command.add_option("--steps N", o->step_count, "shares to measure, from 0 to 1")
+      .range(2, 1000)
+      .capture_default_str()
+      .details("A few more are added around the fastest.");
+  command.add_option("--frames N", o->frame_count, "frames per share; the median counts")
+      .range(2, 1000)
       .capture_default_str();
-  command.add_option("--frames", o->frame_count, "frames per share; the median is used")
-      .range(2u, 1000u)
-      .capture_default_str();
-  command
-      .add_option(
-          "--orbit", o->orbit_degrees,
-          "degrees that the camera orbits per frame; 0: it stands still and only rows changed by animation are sent")
-      .range(-90.0f, 90.0f)
-      .capture_default_str();
-  command
-      .add_option("--device-ns", o->device_ns,
-                  "the device's time per pixel in ns, instead of this machine's times the device's slowdown")
-      .range(1.0, 1e9);
-  command.add_option("--server-ns", o->server_ns, "a server's time per pixel in ns, instead of one core's here")
-      .range(1.0, 1e9);
+  command.add_option("--orbit DEGREES", o->orbit_degrees, "orbit the camera by DEGREES per frame")
+      .range(-90, 90)
+      .capture_default_str()
+      .details("0: it stands still, and only rows changed by animation are sent.");
+  command.add_option("--device-ns X", o->device_ns, "the device's time per pixel in ns")
+      .range(1, 1e9)
+      .default_str("measured")
+      .details("Otherwise this machine's, times the device's slowdown.");
+  command.add_option("--server-ns X", o->server_ns, "a server's time per pixel in ns")
+      .range(1, 1e9)
+      .default_str("measured")
+      .details("Otherwise that of one core here.");
   command.add_flag("--no-paper", o->no_paper, "skip the paper's table");
+  command.chapter("Output");
+  command.add_option("-o,--output DIR", o->folder, "folder for tables and plots; created if missing")
+      .details("split.csv, fronts.csv and, if gnuplot is installed, split.png and fronts.png.");
   add_json_option(command, &o->common.json);
+  command.everyday("Output", {"--output", "--json"});
+  command.everyday("Picture", {"--size", "--emulate"});
+  command.everyday("Simulation",
+                   {"--servers", "--steps", "--frames", "--orbit", "--device-ns", "--server-ns", "--no-paper"});
+  command.example("pocketray split-report cornell --emulate pi-zero -o .");
+  command.example("pocketray split-report statue --emulate tablet --servers 3 --json -");
+  command.about(
+      "Measures the speed-up by render servers against the device's share of the rows, its energy and bytes, and how "
+      "many "
+      "devices share a server. Device, link and servers are simulated on a virtual clock, so you need not start any. A "
+      "busy machine affects only the measured cost per pixel, unless --device-ns and --server-ns give it, and the "
+      "fraction of it that a pixel without indirect light costs.");
   command.callback([=] {
     o->common.output_folder = o->folder;
     *exit_status = run(*o);

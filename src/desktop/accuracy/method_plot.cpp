@@ -20,8 +20,8 @@ Plot method_plot(const Sweep& sweep) {
       times.push_back(ms_of(sweep, m->ns_per_pixel.value)), errors.push_back(m->truth.flip);
   const double own = sweep.truth.flip;
   const Axis x = axis_of(times, 0, false), y = axis_of(errors, own, true);
-  const int height = 560;
-  const PlotFrame frame = {0.16, 0.97, 118.0 / height, 1 - 52.0 / height, height};
+  const int key_bottom = 86 + 28 * static_cast<int>(methods.size()), height = 440 + key_bottom;
+  const PlotFrame frame = {0.16, 0.97, static_cast<double>(key_bottom) / height, 1 - 52.0 / height, height};
   std::string data, plots;
   std::vector<PlotPoint> points;
   std::vector<std::string> labels;
@@ -46,7 +46,7 @@ Plot method_plot(const Sweep& sweep) {
   const std::string body = frame_commands(frame) + axis_commands(x, 'x') + axis_commands(y, 'y') +
                            "set title 'Error over time, by method of indirect light'\nset xlabel 'milliseconds per "
                            "frame'\nset ylabel 'FLIP against full light transport' offset 1.2,0\nset key at screen "
-                           "0.5, screen 0.01 center bottom horizontal samplen 2 maxcols 2\n" +
+                           "0.5, screen 0.01 center bottom vertical samplen 2 maxcols 1\n" +
                            unclaimed_commands(y, own, "the reference's own error") +
                            label_commands(frame, points, labels, kInk) + "plot " + plots + "\n";
   return {"indirect", script_of("indirect", height, data, body)};

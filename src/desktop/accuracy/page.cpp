@@ -1,5 +1,6 @@
 #include "desktop/accuracy/page.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "desktop/accuracy/claim.h"
@@ -51,11 +52,22 @@ std::string samples_text(const ReferenceFigures& reference) {
              : format(" (%u samples per pixel, own error FLIP ", reference.samples) + figure(reference.flip, 2) + ")";
 }
 
-// One picture of the first screen: what it looks like, costs and takes to get.
+// Keeps each option on one line: "--samples 4 --depth 2" breaks only before a "--".
+std::string option_list(const std::string& options) {
+  std::string list;
+  for (std::size_t at = 0; at < options.size();) {
+    const std::size_t next = std::min(options.find(" --", at), options.size());
+    list += (at ? " <span>" : "<span>") + escaped(options.substr(at, next - at)) + "</span>";
+    at = next + 1;
+  }
+  return list;
+}
+
+// One picture of the first screen: what it costs, how to get it and what that means.
 std::string level_card(const std::string& png, const std::string& name, const std::string& figures,
-                       const std::string& how) {
-  return "<figure>" + (png.empty() ? "" : image(png, name)) + "<figcaption><b>" + escaped(name) + "</b> " + figures +
-         "<br /><code>" + escaped(how) + "</code></figcaption></figure>\n";
+                       const std::string& how, const std::string& meaning) {
+  return "<figure>" + (png.empty() ? "" : image(png, name)) + "<figcaption><b>" + name + "</b>" + figures + "<code>" +
+         how + "</code><small>" + meaning + "</small></figcaption></figure>\n";
 }
 
 // Shows each level of quality: its picture, time, error and options.
@@ -64,12 +76,14 @@ std::string quality_of(const Sweep& sweep, const PagePictures& pictures) {
   std::string cards;
   for (const LevelPicture& level : sweep.quality) {
     auto png = pictures.quality.find(level.level);
-    cards += level_card(png == pictures.quality.end() ? "" : png->second, level.level,
-                        figure(level.ms) + " ms, FLIP " + figure(level.flip),
-                        "--quality " + level.level + (level.settings.empty() ? "" : ": " + level.settings));
+    const std::string name = escaped(level.level);
+    cards += level_card(png == pictures.quality.end() ? "" : png->second, name,
+                        row_link(sweep, sweep.measured[level.measured_index],
+                                 "<b>" + figure(level.ms) + " ms</b> <b>FLIP " + figure(level.flip) + "</b>"),
+                        "--quality " + name, level.settings.empty() ? "the defaults" : option_list(level.settings));
   }
-  cards += level_card(pictures.truth_png, text_of(Judge::truth),
-                      sweep.truth.samples ? format("%u samples per pixel", sweep.truth.samples) : "", "reference");
+  cards += level_card(pictures.truth_png, text_of(Judge::truth), "", "pocketray reference",
+                      sweep.truth.samples ? format("%u samples per pixel", sweep.truth.samples) : "");
   return "<div class=\"tiles quality\">\n" + cards +
          "</div>\n<p>FLIP is how different a picture looks from full light "
          "transport when one flips between them: .01 is hard to see, .05 seen at once, .2 another picture. "
@@ -79,23 +93,30 @@ std::string quality_of(const Sweep& sweep, const PagePictures& pictures) {
 
 std::string head_of(const Sweep& sweep, const PagePictures& pictures) {
   std::string title = "What accuracy costs in time: " + escaped(sweep.scene.substr(sweep.scene.rfind('/') + 1));
-  std::string text = page_begin(title) + "<header>\n<div>\n<h1>" + title + "</h1>\n<p class=\"soft\">" +
-                     (sweep.scene.find('/') == std::string::npos ? "" : escaped(sweep.scene) + ", ") +
-                     format("%u × %u pixels", sweep.width, sweep.height) + ", " + escaped(sweep.machine) + ", " +
-                     std::to_string(sweep.rounds) + " rounds; the baseline’s output is " + escaped(sweep.output) +
-                     ".</p>\n</div>\n</header>\n" + quality_of(sweep, pictures) + "<header>\n<div>\n";
-  text += "<p>What a user sees is judged by <b>" + std::string(text_of(Judge::truth)) +
-          "</b>, path traced in double precision" + samples_text(sweep.truth) +
-          "; numerical settings by <b>the converged lighting model</b>" + samples_text(sweep.model) +
-          ", which has no other error. Means leave out what the noise of these references adds. Pictures share that "
-          "noise, so their differences are finer than it; where even a difference is not claimed, figures are <span "
-          "class=\"weak\"><i>grey</i></span>.";
+  return page_begin(title) + "<header>\n<div>\n<h1>" + title + "</h1>\n<p class=\"soft\">" +
+         (sweep.scene.find('/') == std::string::npos ? "" : escaped(sweep.scene) + ", ") +
+         format("%u × %u pixels", sweep.width, sweep.height) + ", " + escaped(sweep.machine) + ", " +
+         std::to_string(sweep.rounds) + " rounds; the baseline’s output is " + escaped(sweep.output) +
+         ".</p>\n</div>\n</header>\n" + quality_of(sweep, pictures);
+}
+
+// Names both references and shows the model's, which the first screen does not have.
+std::string judges_section(const Sweep& sweep, const PagePictures& pictures) {
+  std::string text = "<h2>The judges</h2>\n<header>\n<div>\n<p>What a user sees is judged by <b>" +
+                     std::string(text_of(Judge::truth)) + "</b>, path traced in double precision" +
+                     samples_text(sweep.truth) + "; numerical settings by <b>the converged lighting model</b>" +
+                     samples_text(sweep.model) +
+                     ", which has no other error. Means leave out what the noise of these references adds. Pictures "
+                     "share that noise, so their differences are finer than it; where even a difference is not "
+                     "claimed, figures are <span class=\"weak\"><i>grey</i></span>.";
   if (std::isfinite(sweep.model_distance))
     text += " The converged model itself is FLIP " + figure(sweep.model_distance) +
             (std::isfinite(sweep.model_rmse) ? " and RMSE " + figure(sweep.model_rmse) : "") +
             " from full light transport.";
   text += "</p>\n</div>\n";
-  if (!pictures.reference_png.empty()) text += image(pictures.reference_png, "The reference") + "\n";
+  if (!pictures.reference_png.empty())
+    text += "<figure>" + image(pictures.reference_png, "The converged lighting model") +
+            "<figcaption>The converged lighting model</figcaption></figure>\n";
   return text + "</header>\n";
 }
 
@@ -108,10 +129,12 @@ std::string answer_of(const Sweep& sweep) {
     KnobEnds ends = ends_of(sweep, knob->name);
     bool claimed = gain_claimed(*knob, ends);
     if (is_paid_in_bytes(ends)) {
-      sent +=
-          "<b>" + escaped(knob->name) + "</b> saves bytes from render servers, not time: " +
-          format("%.0f of %.0f", ends.best->bytes_per_frame - ends.worst->bytes_per_frame, ends.best->bytes_per_frame) +
-          " per frame for FLIP " + figure(gain_of(*knob, ends), 2) + ". ";
+      sent += "<b>" + escaped(knob->name) + "</b> saves bytes from render servers, not time: " +
+              row_link(sweep, *ends.worst,
+                       format("%.0f of %.0f per frame for FLIP ",
+                              ends.best->bytes_per_frame - ends.worst->bytes_per_frame, ends.best->bytes_per_frame) +
+                           figure(gain_of(*knob, ends), 2)) +
+              ". ";
     } else if (!claimed || !std::isfinite(knob->ms_per_flip)) {
       add(&idle, knob->name);
     } else if (knob->ms_per_flip <= 0) {
@@ -122,11 +145,13 @@ std::string answer_of(const Sweep& sweep) {
     }
   }
   std::string text;
+  auto price = [&](const KnobFigures& knob) {
+    return row_link(sweep, *ends_of(sweep, knob.name).best, figure(knob.ms_per_flip) + " ms");
+  };
   if (first)
     text += "<b>" + escaped(first->name) + "</b> buys the most accuracy per millisecond: .01 of FLIP for <b>" +
-            figure(first->ms_per_flip) + " ms</b> per frame. ";
-  if (last != first)
-    text += "<b>" + escaped(last->name) + "</b> buys the least: " + figure(last->ms_per_flip) + " ms. ";
+            price(*first) + "</b> per frame. ";
+  if (last != first) text += "<b>" + escaped(last->name) + "</b> buys the least: " + price(*last) + ". ";
   text += sent;
   if (!free.empty()) text += "Better and no slower: " + free + ". ";
   if (!idle.empty()) text += "No gain that can be claimed: " + idle + ".";
@@ -231,7 +256,8 @@ std::string method_of(const Sweep& sweep) {
 
 std::string page_of(const Sweep& sweep, const PagePictures& pictures) {
   std::string text = head_of(sweep, pictures) + "<h2>What buys the most accuracy per millisecond</h2>\n" +
-                     answer_of(sweep) + pair(price_table(sweep), plot_figure(pictures, "price"));
+                     answer_of(sweep) + pair(price_table(sweep), plot_figure(pictures, "price")) +
+                     judges_section(sweep, pictures);
   text += "<h2>The front: the least error for the time</h2>\n<p>Judged by " + std::string(text_of(sweep.judge)) +
           ". No measured configuration is both faster and more accurate, as far as the reference can tell: in order of "
           "time, a setting joins the front if it is nearer than the one before by a hundredth of the error and twice "

@@ -46,11 +46,6 @@ std::string name_of(const Measured& m) {
   return escaped(m.knob == "several" ? m.value : m.knob + " " + m.value);
 }
 
-// A link to the configuration's row of the CSV file [RFC 7111, sec. 2.1].
-std::string row_link(const Sweep& sweep, const Measured& m, const std::string& text) {
-  return "<a href=\"accuracy.csv#row=" + std::to_string(&m - sweep.measured.data() + 2) + "\">" + text + "</a>";
-}
-
 std::string bytes_text(double bytes) { return std::isfinite(bytes) ? format("%.0f", bytes) : "–"; }
 
 std::string stored_text(double bytes) { return std::isfinite(bytes) ? format("%.2f MiB", bytes / (1 << 20)) : "–"; }
@@ -60,8 +55,8 @@ std::string end_text(const Sweep& sweep, const KnobFigures& knob, const Measured
   std::string price =
       in_bytes ? bytes_text(m->bytes_per_frame) + " bytes" : figure(ms_of(sweep, m->ns_per_pixel.value)) + " ms";
   if (knob.is_baked) price += ", " + stored_text(m->stored_bytes);
-  return cell("<b>" + escaped(m->value) + "</b><br /><small>" + price + ", FLIP " + figure(flip_by(knob, *m)) +
-              "</small>");
+  return cell("<b>" + escaped(m->value) + "</b><br /><small>" +
+              row_link(sweep, *m, price + ", FLIP " + figure(flip_by(knob, *m))) + "</small>");
 }
 
 std::string price_text(double price) {
@@ -70,6 +65,10 @@ std::string price_text(double price) {
 }
 
 }  // namespace
+
+std::string row_link(const Sweep& sweep, const Measured& m, const std::string& text) {
+  return "<a href=\"accuracy.csv#row=" + std::to_string(&m - sweep.measured.data() + 2) + "\">" + text + "</a>";
+}
 
 std::string price_table(const Sweep& sweep) {
   std::string rows;
@@ -102,8 +101,8 @@ std::string method_table(const Sweep& sweep) {
   std::string rows;
   for (const std::string& method : methods_of(sweep))
     for (const Measured* m : method_front(sweep, method))
-      rows += "<tr><th>" + escaped(method) + "</th>" +
-              cell(row_link(sweep, *m, own_settings(*m).empty() ? "baseline" : escaped(own_settings(*m)))) +
+      rows += "<tr><th>" + escaped(method) + "</th><td class=\"name\"><span>" +
+              row_link(sweep, *m, own_settings(*m).empty() ? "baseline" : escaped(own_settings(*m))) + "</span></td>" +
               cell(ms_text(sweep, m->ns_per_pixel)) + cell(figure(m->truth.flip)) + "</tr>\n";
   return boxed(headings({"method", "settings", "ms per frame", "FLIP"}), rows);
 }

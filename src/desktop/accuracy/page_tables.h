@@ -6,6 +6,9 @@
 
 namespace pocketray {
 
+// A link to the configuration's row of the CSV file [RFC 7111, sec. 2.1].
+std::string row_link(const Sweep& sweep, const Measured& m, const std::string& text);
+
 // "ms per .01 FLIP" by knob, cheapest first.
 std::string price_table(const Sweep& sweep);
 // The settings of the front by that judge, numbered as in its plot.

@@ -103,6 +103,7 @@ struct LevelPicture {
   double ms = 0;                // per frame
   double flip = 0;              // to the truth, as pictures are written
   Levels picture;
+  std::size_t measured_index = 0;  // of its figures in Sweep::measured
 };
 
 // A reference's samples per pixel, both seeds together, and its own error.

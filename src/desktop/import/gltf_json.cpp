@@ -40,9 +40,10 @@ class Checker {
   bool end_object() { return end_level(); }
   bool end_array() { return end_level(); }
   bool parse_error(std::size_t, const std::string&, const nlohmann::detail::exception& error) {
-    const char* end_of_id = std::strstr(error.what(), "] ");
-    fail_import("not a valid JSON object, so not glTF, at %.200s: %.180s; export the file again", place(true).c_str(),
-                end_of_id ? end_of_id + 2 : error.what());
+    // "[json.exception.parse_error.101] parse error at line 1, column 1: …"
+    const char *where = std::strstr(error.what(), "at line "), *end = where ? std::strchr(where, ':') : nullptr;
+    fail_import("not a valid JSON object, so not glTF, at %.60s%s%.*s; export the file again", place(true).c_str(),
+                end ? ", " : "", end ? static_cast<int>(end - where) - 3 : 0, end ? where + 3 : "");
   }
 
  private:

@@ -75,6 +75,7 @@ void import_any(const std::string& path, const ImportOptions& options, ImportedS
     if (assimp_reads(ending)) return import_by_assimp(path, ending, bytes, options, result);
     if (ending == "blend") fail_import("it is a Blender project; export it as glTF (File, Export, glTF 2.0)");
     if (ending == "pray") fail_import("it is already baked; bake the model it was made from");
+    if (ending.empty()) fail_import("its name has no ending that tells its format: rename it as .glb, .obj, .ply, …");
     fail_import("no reader for '.%.20s' files; convert to one of: %s", ending.c_str(), import_formats().c_str());
   }
   if (gltf && names_draco(bytes)) return import_by_draco(path, bytes, options, result);

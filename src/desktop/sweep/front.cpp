@@ -33,4 +33,14 @@ Front front_of_sweep(const SweepPlan& plan, const Sweep& sweep) {
   return front;
 }
 
+std::size_t point_of_front(const SweepPlan& plan, const Sweep& sweep, const Quality& quality) {
+  CHECK_EQ(sweep.measured.size(), plan.points.size());
+  for (const Measured* m : front_of(sweep, sweep.judge)) {
+    const std::size_t point = static_cast<std::size_t>(m - sweep.measured.data());
+    if (same_quality(plan.points[point].configuration.settings, quality)) return point;
+  }
+  CHECK(false);  // the front has no such point
+  return 0;
+}
+
 }  // namespace pocketray

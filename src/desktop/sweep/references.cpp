@@ -4,6 +4,7 @@
 #include <cinttypes>
 
 #include "base/check.h"
+#include "base/nearest_word.h"
 #include "platform/file.h"
 #include "scene/content_hash.h"
 #include "session/cache.h"
@@ -62,6 +63,10 @@ std::uint32_t reference_samples(const AccuracyOptions& options, Transport transp
 Status name_reference(AccuracyOptions* options) {
   CHECK(options != nullptr);
   if (options->reference == "model" || options->reference == "physical") return success();
+  NearestWord nearest(options->reference.c_str());
+  for (const char* word : {"model", "physical"}) nearest.offer(word);
+  if (nearest.name() && platform::file_stamp(options->reference.c_str()) == 0)
+    return failure("--reference is '%.60s', did you mean '%s'?", options->reference.c_str(), nearest.name());
   if (!options->reference_file.empty() || platform::file_stamp(options->reference.c_str()) == 0)
     return failure("--reference is '%.200s': it must be model, physical or a file of `pocketray reference`",
                    options->reference.c_str());

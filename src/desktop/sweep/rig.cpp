@@ -77,9 +77,11 @@ Status open_with(const AccuracyOptions& options, const CommonOptions& common, co
     if (renderer->view.animation != 0) rig->scene_hash += ", animation " + common.animation;
     ContentHash identity;
     rig->has_own_look = common.background.empty() && common.environment.empty() &&
-                        common.light == CommonOptions().light && renderer->view.animation == 0;
-    if (rig->has_own_look && identify_scene(source, renderer, &identity).ok)
-      rig->front_path = front_path(common.scene, identity);
+                              common.light == CommonOptions().light && renderer->view.animation == 0;
+    if (!rig->has_own_look || !identify_scene(source, renderer, &identity).ok) return success();
+    rig->front_path = front_path(common.scene, identity);
+    rig->prices_path =
+        front_path(common.scene, identity, machine_name(renderer->pace.device, renderer->settings.threads));
     return success();
   };
   hooks.plan = plan_sweeps;

@@ -249,8 +249,12 @@ Status add_quality(SweepRun* run, const Front& measured, Sweep* sweep, bool* who
     RETURN_IF_ERROR(time_frame(rig, configuration, run->options.seconds, &ns_per_pixel));
     *whole = !interrupted;
     if (!*whole) return success();
-    LevelPicture level = {
-        kQualityLevelNames[i], options_of(candidate), ms_of(*sweep, candidate.ns_per_pixel), candidate.flip, {}};
+    LevelPicture level = {kQualityLevelNames[i],
+                          options_of(candidate),
+                          ms_of(*sweep, candidate.ns_per_pixel),
+                          candidate.flip,
+                          {},
+                          point_of_front(run->plan, *sweep, candidate)};
     RETURN_IF_ERROR(find_levels(run->options, rig, configuration, &level.picture, nullptr));
     sweep->quality.push_back(level);
   }
@@ -322,7 +326,7 @@ Status measure_sweep(const AccuracyOptions& options, Sweep* sweep, bool* whole, 
   sweep->rounds = run.state.rounds;
   sum_up(run.plan, figures, sweep);
   const Front measured = front_of_sweep(run.plan, *sweep);
-  if (front) *front = {measured, rig.front_path};
+  if (front) *front = {measured, rig.front_path, rig.prices_path};
   RETURN_IF_ERROR(predict_radiosity(options, run.judges, &run.rigs, sweep, whole));
   if (!*whole) return success();
   RETURN_IF_ERROR(add_quality(&run, measured, sweep, whole));

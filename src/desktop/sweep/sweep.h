@@ -33,9 +33,10 @@ struct AccuracyOptions {
 // A scene opened for all configurations that share its geometry.
 struct Rig {
   OpenScene opened;
-  Configuration baseline;     // as set by the options
-  std::string scene_hash;     // of its content
-  std::string front_path;     // in the cache; empty: not identified, or its look is overridden
+  Configuration baseline;  // as set by the options
+  std::string scene_hash;  // of its content
+  // In the cache, of the front and of its prices on this machine; empty: not identified, or its look is overridden.
+  std::string front_path, prices_path;
   bool has_own_look = false;  // neither light nor surroundings are overridden
   double bake_seconds = kNotMeasured, stored_bytes = 0;  // bake_seconds: of scenes that were baked for the sweep
   std::vector<std::uint32_t> packed;                     // pixels of the last frame

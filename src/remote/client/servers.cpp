@@ -87,9 +87,12 @@ Status check(const ServersOptions& o) {
     return failure("--split shares frames with render servers: add --server");
   if (o.split != "rows" && o.device_share != kBestShare)
     return failure("--share and --split %s both set what the device renders: drop one of them", o.split.c_str());
-  bool any = o.price > 0 || o.energy_pixel > 0 || o.energy_byte > 0 || o.cost_weight_ms > 0 || o.cost_cap > 0;
-  if (o.addresses.empty() && (any || o.device_share != kBestShare))
-    return failure("shares, prices and energies apply to render servers: add --server");
+  const std::pair<const char*, bool> given[] = {
+      {"--share", o.device_share != kBestShare}, {"--price", o.price > 0},
+      {"--energy-pixel", o.energy_pixel > 0},    {"--energy-byte", o.energy_byte > 0},
+      {"--cost-weight", o.cost_weight_ms > 0},   {"--cost-cap", o.cost_cap > 0}};
+  for (const auto& [option, is_given] : given)
+    if (o.addresses.empty() && is_given) return failure("%s applies to render servers: add --server", option);
   if (o.cost_weight_ms > 0 && o.cost_cap > 0)
     return failure("--cost-weight and --cost-cap exclude each other: use one of them");
   return success();

@@ -146,17 +146,17 @@ int main(int argument_count, char** arguments) {
   PovrayOptions options;
   CommandLine line(
       "bench_povray",
-      "bench_povray renders the statue under one point light with hard shadows with POV-Ray and pocketray, in turn,\n"
-      "on one thread, compares the pictures, and prints the tracing time per pixel of each.\n"
-      "Try:  bench_povray --size 320x240\n");
+      "bench_povray renders the statue under one point light with hard shadows with POV-Ray and pocketray, in turn, "
+      "on one thread, compares the pictures, and prints the tracing time per pixel of each.");
   Command program = line.program();
-  program.add_option("--size", options.sizes, "picture sizes; default: 320x240 1280x960");
+  program.example("bench_povray --size 320x240");
+  program.add_option("--size WxH", options.sizes, "picture sizes").default_str("320x240 1280x960");
   program.add_option("--rounds", options.rounds, "rounds in which both render in turn")
       .range(1, 1000)
       .capture_default_str();
-  program.add_option("--povray", options.program, "POV-Ray's command").capture_default_str();
-  program.add_option("--folder", options.folder, "folder for the scene and the pictures").capture_default_str();
-  program.add_option("--json", options.json, "write the table as JSON to FILE, or - for standard output");
+  program.add_option("--povray COMMAND", options.program, "POV-Ray's command").capture_default_str();
+  program.add_option("--folder DIR", options.folder, "folder for the scene and the pictures").capture_default_str();
+  program.add_option("--json FILE", options.json, "write the table as JSON to FILE, or - for standard output");
   ParseResult parsed = line.parse({arguments + 1, arguments + argument_count});
   if (!parsed.error.empty()) {
     std::fprintf(stderr, "%s\nRun with --help for more information.\n", parsed.error.c_str());

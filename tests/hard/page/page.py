@@ -1,14 +1,16 @@
 #!/usr/bin/env python3
-"""page.py LINES PAGE: makes the page of the hard cases from the lines that their tests wrote (support/hard_case.h).
+"""page.py LINES NAMES PAGE: makes the page of the hard cases from the lines that their tests wrote (support/hard_case.h)
+and the names of all tests: suite TAB name.
 
-Every figure is measured; rows.py has only titles and pictures. The page stands alone: no scripts, no other files.
+Every figure is measured; rows.py has only titles and pictures. The page needs no scripts and no other files; its figures
+lead to their lines in a CSV file beside it.
 """
 import html
 import os
 import re
 import sys
-from dataclasses import dataclass, field
 
+from cases import read_cases, row_of, write_csv
 from pictures import draw
 from rows import ROWS, SECTIONS
 
@@ -23,6 +25,7 @@ body { margin: 0 auto; padding: 1rem; max-width: 76rem; background: var(--paper)
 h1 { font-size: 1.7rem; line-height: 1.2; margin: 0 0 .4rem; }
 h2 { font-size: 1.25rem; margin: 0; padding-top: 1.6rem; }
 p { margin: .4rem 0 .8rem; max-width: 46rem; }
+a { color: inherit; text-decoration: underline var(--line); text-underline-offset: .2em; }
 small, .soft { color: var(--soft); font-size: .85em; }
 .answer { background: var(--card); border-left: 4px solid var(--mark); border-radius: 4px; padding: .7rem 1rem;
   max-width: none; font-size: 1.1rem; }
@@ -62,41 +65,6 @@ padded: the box test of Williams et al. 2005.</p>
 """
 
 
-@dataclass
-class Beside:
-    method: str
-    answer: str
-    inputs: int
-    wrong: int
-    seconds: float
-    our_wrong: int
-    our_seconds: float
-
-
-@dataclass
-class Case:
-    name: str
-    inputs: int
-    wrong: int
-    bound: str
-    seconds: float
-    beside: list = field(default_factory=list)
-
-
-def read_case(line):
-    name, inputs, wrong, bound, seconds, *rest = line.rstrip("\n").split("\t")
-    case = Case(name, int(inputs), int(wrong), bound, float(seconds))
-    for text in rest[0].split(";") if rest and rest[0] else []:
-        method, answer, count, bad, took, our_bad, our_took = text.split("|")
-        case.beside.append(Beside(method, answer, int(count), int(bad), float(took), int(our_bad), float(our_took)))
-    return case
-
-
-def row_of(case):
-    found = re.match(r"hard_(\d+)_", case.name)
-    return int(found[1]) if found else None
-
-
 def grouped(count):
     return f"{count:,}".replace(",", "\u202f")
 
@@ -106,54 +74,81 @@ def share(wrong, inputs):
     return "0" if wrong == 0 else f"{percent:.2g} %" if percent < 10 else f"{percent:.0f} %"
 
 
-def nanoseconds(seconds, inputs):
-    ns = 1e9 * seconds / inputs
-    if ns < 10000:
-        return f"{ns:.1f} ns" if ns < 100 else f"{grouped(round(ns))} ns"
-    return f"{ns / 1000:.1f} µs" if ns < 100000 else f"{grouped(round(ns / 1000))} µs"
+def duration(seconds, inputs):
+    value = 1e9 * seconds / inputs
+    for unit in ("ns", "µs"):
+        if value < 10000:
+            return f"{value:.1f} {unit}" if value < 100 else f"{grouped(round(value))} {unit}"
+        value /= 1000
+    return f"{value:.1f} ms" if value < 100 else f"{grouped(round(value))} ms"
 
 
-def count_text(wrong, inputs):
+def answer_html(answer):
+    return html.escape(re.sub(r"\d{4,}", lambda m: grouped(int(m[0])), answer))
+
+
+class Links:
+    """Links of figures to their lines in the CSV file (RFC 7111, sec. 2.1)."""
+
+    def __init__(self, file):
+        self.file = file
+
+    def to(self, entries, text):
+        lines = [entry.line for entry in entries]
+        rows = f"{lines[0]}-{lines[-1]}" if len(lines) > 20 else ";".join(map(str, lines))
+        return f'<a href="{html.escape(self.file)}#row={rows}">{text}</a>'
+
+
+def count_text(cases, links):
+    inputs, wrong = sum(c.inputs for c in cases), sum(c.wrong for c in cases)
+    if inputs == 0:
+        return '<span class="wrong"><b>did not run</b></span>'
     kind = "wrong" if wrong else "right"
-    return f'<span class="{kind}"><b>{grouped(wrong)}</b> wrong</span> of {grouped(inputs)}'
+    return links.to(cases, f'<span class="{kind}"><b>{grouped(wrong)}</b> wrong</span> of {grouped(inputs)}')
 
 
-def methods_html(cases):
+def methods_html(cases, links):
     text = ""
-    for b in (b for case in cases for b in case.beside):
+    beside = [b for case in cases for b in case.beside]
+    several = len({b.answer for b in beside}) > 1
+    for b in beside:
+        what = f", {answer_html(b.answer)}" if several else ""
         width = 0 if b.wrong == 0 else max(1.0, 100 * b.wrong / b.inputs)
-        text += (f'<div class="method"><span>{html.escape(b.method)}</span><span>{share(b.wrong, b.inputs)} wrong</span>'
+        text += (f'<div class="method"><span>{html.escape(b.method)}</span><span>{links.to([b], share(b.wrong, b.inputs) + " wrong")}</span>'
                  f'<span class="bar"><i style="width:{width:.1f}%"></i></span>'
-                 f"<small>{grouped(b.wrong)} of {grouped(b.inputs)}</small>"
-                 f"<span>{nanoseconds(b.seconds, b.inputs)}</span></div>")
+                 f"<small>{links.to([b], f'{grouped(b.wrong)} of {grouped(b.inputs)}')}{what}</small>"
+                 f"<span>{links.to([b], duration(b.seconds, b.inputs))}</span></div>")
     return text
 
 
-def our_times_html(cases):
+def our_times_html(cases, links):
     text, seen = "", set()
     for case in cases:
         for b in case.beside:
             if (case.name, b.answer) not in seen:
-                text += (f"<div>{nanoseconds(b.our_seconds, b.inputs)} <small>for a {html.escape(b.answer)}, "
-                         f"{grouped(b.our_wrong)} wrong of {grouped(b.inputs)}</small></div>")
+                counts = f"{grouped(b.our_wrong)} wrong of {grouped(b.inputs)}"
+                text += (f"<div>{links.to([b], duration(b.our_seconds, b.inputs))} <small>for a {answer_html(b.answer)}, "
+                         f"{links.to([b], counts)}</small></div>")
             seen.add((case.name, b.answer))
     return text
 
 
 def tests_html(cases):
     lines = "".join(f"<div>{html.escape(c.name)}: {grouped(c.wrong)} of {grouped(c.inputs)}, {html.escape(c.bound)}, "
-                    f"{c.seconds:.1f} s</div>" for c in cases)
-    return f"<details><summary>{len(cases)} test{'s' if len(cases) > 1 else ''}</summary>{lines}</details>"
+                    f"{c.seconds:.1f} s</div>" if c.ran else
+                    f'<div class="wrong">{html.escape(c.name)} did not run</div>' for c in cases)
+    ran = sum(c.ran for c in cases)
+    count = f"{len(cases)} test{'s' if len(cases) > 1 else ''}"
+    return f"<details><summary>{count if ran == len(cases) else f'{ran} of {count} ran'}</summary>{lines}</details>"
 
 
-def row_html(number, title, answer, picture, cases):
-    inputs, wrong = sum(c.inputs for c in cases), sum(c.wrong for c in cases)
-    methods = methods_html(cases)
+def row_html(number, title, answer, picture, cases, links):
+    methods = methods_html(cases, links)
     name = ' data-name="ordinary methods"' if methods else ""
     return (f'<tr><td class="number">{number}</td>'
             f'<td class="case"><b>{html.escape(title)}</b><span class="soft">{html.escape(answer)}</span></td>'
             f"<td>{picture}</td>"
-            f'<td class="ours" data-name="ours">{count_text(wrong, inputs)}{our_times_html(cases)}{tests_html(cases)}</td>'
+            f'<td class="ours" data-name="ours">{count_text(cases, links)}{our_times_html(cases, links)}{tests_html(cases)}</td>'
             f"<td{name}>{methods}</td></tr>\n")
 
 
@@ -166,26 +161,50 @@ def machine():
     return (html.escape(names[0]) + ", " if names else "") + f"{os.cpu_count()} threads"
 
 
-def head_html(cases):
+def share_html(cases):
+    shares = sorted({c.share for c in cases if c.ran})
+    if shares == [1]:
+        return "The full run"
+    text = [f"{100 * s:.3g} %" for s in shares]
+    return f"A run of {text[0] if len(text) == 1 else f'{text[0]} to {text[-1]}'} of the full run’s inputs, where these are many"
+
+
+def missing_html(cases, suites):
+    missing = [c.name for c in cases if not c.ran]
+    if not missing:
+        return ""
+    by_suite = {}
+    for name in missing:
+        by_suite.setdefault(suites.get(name, ""), []).append(name)
+    lists = "".join(f"<div>test_{html.escape(suite)}: {html.escape(', '.join(names))}</div>"
+                    for suite, names in sorted(by_suite.items()))
+    return (f'<p class="answer"><b class="wrong">{len(missing)} of {len(cases)} tests did not run</b> or did not finish; '
+            f"their rows lack answers.</p>\n<details><summary>which</summary>{lists}</details>\n")
+
+
+def head_html(cases, suites, links):
     inputs, wrong = sum(c.inputs for c in cases), sum(c.wrong for c in cases)
     beside = [b for c in cases for b in c.beside]
-    rows = {row_of(c) for c in cases} - {None}
+    rows = {row_of(c) for c in cases if c.ran} - {None}
+    ran = sum(c.ran for c in cases)
     text = ("<h1>Hard cases</h1>\n<p>Inputs that break ordinary ray tracers: what they are, how often the program is wrong, "
             "and what ordinary methods make of equal inputs.</p>\n"
-            f'<p class="answer"><b class="{"wrong" if wrong else "right"}">{grouped(wrong)} wrong answers</b> to '
-            f"{grouped(inputs)} inputs of {len(cases)} tests in {len(rows)} rows")
+            '<p class="answer">' + links.to(cases, f'<b class="{"wrong" if wrong else "right"}">{grouped(wrong)} wrong answers</b> to '
+                                            f"{grouped(inputs)} inputs"))
     if beside:
-        text += (f"; ordinary methods gave <b class=\"wrong\">{grouped(sum(b.wrong for b in beside))}</b> to "
-                 f"{grouped(sum(b.inputs for b in beside))}")
-    return text + (f'.</p>\n<p class="soft">{machine()}; {sum(c.seconds for c in cases):.0f} s in all. Times are CPU times of '
-                   "one thread and hold only beside each other. Inputs are aimed at the weak spots: shares of wrong answers say nothing "
-                   "about ordinary scenes.</p>\n")
+        text += "; ordinary methods gave " + links.to(beside, f'<b class="wrong">{grouped(sum(b.wrong for b in beside))}</b> to '
+                                                      f"{grouped(sum(b.inputs for b in beside))}")
+    text += ". " + links.to(cases, f"<b>{ran} of {len(cases)} tests</b>") + f" ran, in {len(rows)} rows.</p>\n"
+    return text + missing_html(cases, suites) + (
+        f'<p class="soft">{share_html(cases)}, on {machine()}, in {sum(c.seconds for c in cases):.0f} s. Times are CPU times of one '
+        "thread and hold only beside each other. Inputs are aimed at the weak spots: shares of wrong answers say nothing about "
+        "ordinary scenes.</p>\n")
 
 
-def page_html(cases):
+def page_html(cases, suites, links):
     text = ('<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
             '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
-            f"<title>Hard cases</title>\n<style>{STYLE}</style>\n</head>\n<body>\n" + head_html(cases) +
+            f"<title>Hard cases</title>\n<style>{STYLE}</style>\n</head>\n<body>\n" + head_html(cases, suites, links) +
             "<table>\n<thead><tr><th></th><th>case, right answer</th><th></th><th>ours</th><th>ordinary methods</th></tr></thead>\n")
     by_row = {}
     for case in cases:
@@ -198,28 +217,30 @@ def page_html(cases):
         text += f'<tbody><tr><th colspan="5" scope="rowgroup"><h2>{html.escape(name)}</h2></th></tr>\n'
         for n in numbers:
             title, answer, picture = ROWS.get(n, (f"Row {n}", "", ""))
-            text += row_html(n, title, answer, draw(picture, title) if picture else "", by_row[n])
+            text += row_html(n, title, answer, draw(picture, title) if picture else "", by_row[n], links)
         text += "</tbody>\n"
     if None in by_row:
         text += '<tbody><tr><th colspan="5" scope="rowgroup"><h2>Every method against another</h2></th></tr>\n'
         for case in by_row[None]:
             title = re.sub(r"^(hard|differential)_", "", case.name).replace("_", " ")
-            text += row_html("", title[0].upper() + title[1:], case.bound, "", [case])
+            text += row_html("", title[0].upper() + title[1:], case.bound, "", [case], links)
         text += "</tbody>\n"
     return text + "</table>\n" + NOTES + "</body>\n</html>\n"
 
 
 def main():
-    if len(sys.argv) != 3:
+    if len(sys.argv) != 4:
         print(__doc__, file=sys.stderr)
         return 2
-    with open(sys.argv[1], encoding="utf-8") as file:
-        cases = [read_case(line) for line in file]
-    if not cases:
+    with open(sys.argv[1], encoding="utf-8") as lines, open(sys.argv[2], encoding="utf-8") as names:
+        cases, suites = read_cases(lines, names)
+    if not any(case.ran for case in cases):
         print("page.py: no hard case was run", file=sys.stderr)
         return 1
-    with open(sys.argv[2], "w", encoding="utf-8") as file:
-        file.write(page_html(cases))
+    table = os.path.splitext(sys.argv[3])[0] + ".csv"
+    write_csv(table, cases)
+    with open(sys.argv[3], "w", encoding="utf-8") as file:
+        file.write(page_html(cases, suites, Links(os.path.basename(table))))
     return 0
 
 
