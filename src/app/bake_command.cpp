@@ -176,10 +176,6 @@ void add_bake_command(Command program, int* exit_status) {
       .details("compressed: blocks of 4 to 12 bits a texel instead of 32; their errors are printed.");
   command.add_flag("--no-mip-maps", options->no_mip_maps, "store no smaller levels of textures")
       .details("Textures then take a quarter less memory but sparkle where they appear small.");
-  command.add_option("--crease-angle N", options->model.crease_angle, "smooth edges below N degrees")
-      .range(0, 180)
-      .capture_default_str()
-      .details("For models without normals, except glTF, where these are always flat.");
   add_environment_option(command, &options->environment);
   command.add_flag("--radiosity", options->radiosity, "solve and store the light between surfaces")
       .details("Takes seconds to minutes here and little on the device. The pose is that of time 0.");
@@ -205,7 +201,7 @@ void add_bake_command(Command program, int* exit_status) {
       .details(help);
   command.everyday("Output", {"--output", "--accel"});
   command.everyday("Light", {"--radiosity", "--environment"});
-  command.everyday("Model", {"--up", "--crease-angle", "--animation"});
+  command.everyday("Model", {"--up", "--animation"});
   command.everyday("Textures", {"--texture-max", "--textures"});
   command.example("pocketray bake model.glb -o model.pray");
   command.example("pocketray bake cornell --radiosity -o cornell.pray");

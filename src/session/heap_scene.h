@@ -19,11 +19,9 @@ struct HeapScene {
 };
 
 // Options for importing models; see import/import.h. Chosen: 512 texels are more than a row of a 320×240 picture shows.
-// Edges sharper than 40° stay sharp: those of a box and of an eight-sided cylinder.
 struct ModelOptions {
   std::uint32_t texture_side_max = 512;
   bool mip_maps = true;
-  float crease_angle = 40;
   bool studio = true;  // for models that call for one
   ReadingChoice reading;
   bool animations = true;

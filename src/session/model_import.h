@@ -18,7 +18,6 @@ enum class UpAxis { of_format, y, z };
 struct ImportOptions {
   std::uint32_t texture_side_max = 512;  // larger textures are halved until they fit
   bool mip_maps = true;                  // store smaller levels of textures
-  float crease_angle = 40;               // degrees; meshes without normals are smoothed below it (glTF: flat)
   bool strict = false;                   // refuse vertices that are not finite instead of leaving out their faces
   UpAxis up = UpAxis::of_format;         // for formats that do not specify it: OBJ, PLY, STL, OFF
   bool animations = true;                // false: the model at rest

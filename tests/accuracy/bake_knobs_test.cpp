@@ -48,9 +48,8 @@ std::string baked_knobs(const SweepPlan& plan) {
 // Goal: a scene is baked only in ways that change it. Method: models with textures of several sides, without, and
 // built-in scenes.
 TEST_CASE("bake_knobs_fit_what_a_scene_holds") {
-  const BakeableScene small = {true, 128, false, false}, usual = {true, 512, false, false},
-                      large = {true, 1024, true, false}, bare = {true, 0, true, true},
-                      built_in = {false, 64, false, true};
+  const BakeableScene small = {true, 128, false}, usual = {true, 512, false}, large = {true, 1024, false},
+                      bare = {true, 0, true}, built_in = {false, 64, true};
   CHECK(fitting("texture-max", small) == "64 texels;512 texels;");
   CHECK(fitting("texture-max", usual) == "64 texels;128 texels;256 texels;512 texels;");
   CHECK(fitting("texture-max", large) == "64 texels;128 texels;256 texels;512 texels;1024 texels;");
@@ -61,8 +60,6 @@ TEST_CASE("bake_knobs_fit_what_a_scene_holds") {
   CHECK(fitting("mip-maps", built_in) == "");
   CHECK(fitting("textures", built_in) == "compressed;exact;");
   CHECK(fitting("textures", bare) == "");
-  CHECK(fitting("crease-angle", small) == "");
-  CHECK(fitting("crease-angle", large) == "0°;20°;40°;60°;180°;");
   CHECK(fitting("radiosity", large) == "");
   CHECK(fitting("radiosity", bare) == "none;75 patches;300 patches;1200 patches;2400 patches;");
 }
@@ -70,7 +67,7 @@ TEST_CASE("bake_knobs_fit_what_a_scene_holds") {
 // Goal: only a sweep that may bake has these knobs, unchanged settings besides, and never a point on the front. Method:
 // plans with and without, all of them equally fast; figures that would put each baked point on the front.
 TEST_CASE("bake_knobs_are_swept_on_request_and_never_on_the_front") {
-  const BakeableScene lit = {true, 256, false, true}, dark = {true, 0, false, false};
+  const BakeableScene lit = {true, 256, true}, dark = {true, 0, false};
   CHECK(baked_knobs(plan_of(nullptr)) == "");
   CHECK(baked_knobs(plan_of(&dark)) == "");
   const SweepPlan plan = plan_of(&lit);

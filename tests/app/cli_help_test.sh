@@ -38,7 +38,7 @@ for command in "${commands[@]}"; do
     check "${command}_help_again_$option" cmp -s one again
   done < <(grep -oE -- '^  (-[a-zA-Z], )?--[a-z-]+' full | grep -oE -- '--[a-z-]+')
 done
-expect help_all_of_the_program 0 '^  --crease-angle N' --help-all
+expect help_all_of_the_program 0 '^  --texture-max N' --help-all
 expect settings_are_in_full_help 0 '^  --area-lights N .*1 … 256' render --help-all
 check settings_are_not_in_short_help test -z "$("${run[@]}" render --help | grep -e --area-lights -e --light-every)"
 expect excluded_and_why 0 'Excludes  --budget-ms: --budget-ms chooses' render --help samples

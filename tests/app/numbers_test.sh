@@ -42,7 +42,7 @@ sweep "${scene/ --size/} --time --orbit --turntable --rotate --frames --budget-m
 sweep "--size" render cube --memory 4M -o a.ppm
 sweep "$scene" plan cube
 sweep "--frames" bench cube "${small[@]}" --no-prices --json nowhere/a.json
-sweep "--texture-max --crease-angle" bake cube -o nowhere/a.pray
+sweep "--texture-max --patches" bake cube -o nowhere/a.pray
 sweep "--scale --frames --rotate" view cube "${small[@]}" --screen none
 for place in 0 1 2 3 4 5 6 7 8 9; do
   for value in nan inf -inf 1e19 1e39 -1e300 ''; do

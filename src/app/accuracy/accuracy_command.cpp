@@ -98,7 +98,7 @@ void add_accuracy_command(Command program, const Team& team, int* exit_status) {
       .details("Where the CPU does not count them; takes a minute or more, with many lights hours.");
   command.add_flag("--bake-choices", o->bakes, "also bake the scene otherwise and measure that")
       .details(
-          "Bakes it with other --textures, --texture-max and --crease-angle, without mip maps, and with --radiosity of "
+          "Bakes it with other --textures and --texture-max, without mip maps, and with --radiosity of "
           "few to many patches: time, bytes and error of each. Says first how long the bakes take.");
   command.add_flag("--restart", o->restart, "discard the folder's measurements and start over");
   command.chapter("Reference");

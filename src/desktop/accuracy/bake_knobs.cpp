@@ -21,9 +21,9 @@ std::string texture_max_unfit(const BakeableScene& scene, double value) {
 }  // namespace
 
 std::vector<Knob> bake_knobs() {
-  std::vector<Knob> knobs(5);
+  std::vector<Knob> knobs(4);
   for (Knob& knob : knobs) knob.theory = "", knob.alone = true, knob.is_setting = false;
-  Knob &side = knobs[0], &mip_maps = knobs[1], &blocks = knobs[2], &crease = knobs[3], &radiosity = knobs[4];
+  Knob &side = knobs[0], &mip_maps = knobs[1], &blocks = knobs[2], &radiosity = knobs[3];
   side.name = "texture-max", side.what = "longest side of textures, as `bake --texture-max` stores them";
   side.effect = "texture";
   side.values = {64, 128, 256, 512, kTextureSideSwept};
@@ -47,16 +47,6 @@ std::vector<Knob> bake_knobs() {
   blocks.get = [](const Configuration& c) { return c.bake.is_compressed ? 0.0 : 1.0; };
   blocks.set = [](Configuration* c, double v) { c->bake.is_compressed = v == 0; };
   blocks.bake_unfit = [](const BakeableScene& scene, double) { return texture_unfit(scene); };
-
-  crease.name = "crease-angle";
-  crease.what = "edges below it are shaded smoothly where a model has no normals; errors are differences from 40°";
-  crease.effect = "smooth-normal";
-  crease.values = {0, 20, 40, 60, 180}, crease.labels = {"0°", "20°", "40°", "60°", "180°"};
-  crease.get = [](const Configuration& c) { return static_cast<double>(c.bake.crease_angle); };
-  crease.set = [](Configuration* c, double v) { c->bake.crease_angle = static_cast<float>(v); };
-  crease.bake_unfit = [](const BakeableScene& scene, double) -> std::string {
-    return scene.has_creases ? "" : "the scene has normals, or all of its edges are sharp";
-  };
 
   radiosity.name = "radiosity", radiosity.what = "patches between which `bake --radiosity` solves light";
   radiosity.effect = kRadiosityEffect;

@@ -28,15 +28,13 @@ int find_output_format(const std::string& name);
 struct BakeChoices {
   std::uint32_t texture_side_max = 512;
   bool has_mip_maps = true, is_compressed = false;
-  float crease_angle = 40;
   std::uint32_t patch_count = 0;  // of radiosity; 0: what the scene has
 };
 
 // A scene's part in these choices.
 struct BakeableScene {
-  bool is_model = false;           // it is imported, so its textures and normals could be imported otherwise
+  bool is_model = false;           // it is imported, so its textures could be imported otherwise
   std::uint32_t texture_side = 0;  // the longest, up to the largest --texture-max of the sweep; 0: no textures
-  bool has_creases = false;        // its normals depend on --crease-angle
   bool is_lit = false;             // it has light of its own and stores no radiosity
 };
 
@@ -80,8 +78,7 @@ inline bool is_bake_choice(const Knob& knob) { return knob.bake_unfit != nullptr
 inline bool is_as_opened(const BakeChoices& c) {
   const BakeChoices opened;
   return c.texture_side_max == opened.texture_side_max && c.has_mip_maps == opened.has_mip_maps &&
-         c.is_compressed == opened.is_compressed && c.crease_angle == opened.crease_angle &&
-         c.patch_count == opened.patch_count;
+         c.is_compressed == opened.is_compressed && c.patch_count == opened.patch_count;
 }
 
 // The judge of its values: see KnobFigures.

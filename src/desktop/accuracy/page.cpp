@@ -204,8 +204,7 @@ std::string baked_method(const Sweep& sweep) {
   for (const KnobFigures& knob : sweep.knobs)
     if (knob.is_baked)
       return " Choices of <code>bake</code> are measured on the scene as baked with them; what is stored is the whole "
-             "file, which a device loads as it is. The references show the largest textures. No file says what its "
-             "creases should look like, so those errors are differences from the usual angle.";
+             "file, which a device loads as it is. The references show the largest textures.";
   return "";
 }
 

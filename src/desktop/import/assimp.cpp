@@ -248,7 +248,7 @@ void import_assimp(const std::string& path, const std::string& ending, const Byt
     const aiMesh& source = *scene->mMeshes[i];
     MeshData mesh = convert(reader, source);
     tidy_mesh(&mesh);
-    if (mesh.normals.empty()) smooth_normals(&mesh, builder->options.crease_angle);
+    if (mesh.normals.empty()) smooth_normals(&mesh, kCreaseDegrees);
     meshes.push_back(std::move(mesh));
   }
   append_nodes(&reader, &meshes);

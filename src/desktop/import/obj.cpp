@@ -200,10 +200,10 @@ MeshData shape_mesh(const ObjShape& shape, const ObjFile& file, const std::vecto
 
 // Adds normals to a shape's mesh where the file has none.
 void smooth(const ObjFile& file, const ObjSurfaces& surfaces, std::size_t shape, const CornerIndex& index,
-            const std::vector<std::uint32_t>& groups, float crease_angle, MeshData* mesh) {
+            const std::vector<std::uint32_t>& groups, MeshData* mesh) {
   if (!mesh->normals.empty()) return;
-  if (!file.has_groups) return smooth_normals(mesh, crease_angle);
-  smooth_normals(mesh, crease_angle, &groups, [&](std::uint32_t vertex, std::uint32_t group) {
+  if (!file.has_groups) return smooth_normals(mesh, kCreaseDegrees);
+  smooth_normals(mesh, kCreaseDegrees, &groups, [&](std::uint32_t vertex, std::uint32_t group) {
     const std::int32_t position = index.position(vertex);
     if (position == kNoElement) return Vec3d{0, 0, 0};
     return surfaces.normals_elsewhere(static_cast<std::size_t>(position), shape, group);
@@ -266,7 +266,7 @@ void import_obj(const std::string& path, Bytes bytes, SceneBuilder* builder) {
     std::vector<std::uint32_t> groups;
     MeshData mesh = shape_mesh(shape, file, materials, &index, builder, &groups);
     for (std::uint32_t material : mesh.triangle_materials) default_used |= material == default_material;
-    smooth(file, surfaces, s, index, groups, builder->options.crease_angle, &mesh);
+    smooth(file, surfaces, s, index, groups, &mesh);
     tidy_mesh(&mesh);
     begin_part(builder, shape.name);
     append_mesh(builder, mesh, turn);

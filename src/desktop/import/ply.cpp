@@ -294,7 +294,7 @@ void import_ply(const std::string& path, const Bytes& bytes, SceneBuilder* build
     note_remark(builder, "the PLY file names a texture and has no texture coordinates");
   append_faces(faces, &mesh, builder);
   tidy_mesh(&mesh);
-  if (mesh.normals.empty()) smooth_normals(&mesh, builder->options.crease_angle);
+  if (mesh.normals.empty()) smooth_normals(&mesh, kCreaseDegrees);
   append_mesh(builder, mesh, turn);
 }
 

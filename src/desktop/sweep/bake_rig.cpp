@@ -17,7 +17,6 @@ ModelOptions model_options(const BakeChoices& choices, const Renderer& renderer,
   ModelOptions model;
   model.texture_side_max = choices.texture_side_max;
   model.mip_maps = choices.has_mip_maps;
-  model.crease_angle = choices.crease_angle;
   const Look& look = renderer.view.look;
   model.studio = look.environment == EnvironmentChoice::as_scene && !look.has_background;
   model.animations = renderer.view.animation != kNone;
@@ -91,15 +90,9 @@ Status find_bakeable(const std::string& name, const OpenScene& opened, bool has_
   if (!bakeable->is_model) return success();
   BakeChoices choices;
   choices.texture_side_max = kTextureSideSwept;
-  std::size_t sizes[2];
-  for (float angle : {0.0f, 180.0f}) {
-    HeapScene heap;
-    choices.crease_angle = angle;
-    RETURN_IF_ERROR(read_heap_scene(name, model_options(choices, opened.renderer, opened.source), &heap));
-    bakeable->texture_side = longest_side(heap.scene);
-    sizes[angle > 0] = baked_size(heap.scene);
-  }
-  bakeable->has_creases = sizes[0] != sizes[1];
+  HeapScene heap;
+  RETURN_IF_ERROR(read_heap_scene(name, model_options(choices, opened.renderer, opened.source), &heap));
+  bakeable->texture_side = longest_side(heap.scene);
   return success();
 }
 

@@ -28,8 +28,8 @@ std::vector<Settings> ladder_of(const Renderer& renderer) {
 std::string key_of(const SceneChoice& choice) {
   const BakeChoices& b = choice.bake;
   char text[96];
-  std::snprintf(text, sizeof text, "%u %u %d %d %g %u", choice.sphere_columns, b.texture_side_max, b.has_mip_maps,
-                b.is_compressed, static_cast<double>(b.crease_angle), b.patch_count);
+  std::snprintf(text, sizeof text, "%u %u %d %d %u", choice.sphere_columns, b.texture_side_max, b.has_mip_maps,
+                b.is_compressed, b.patch_count);
   return text;
 }
 
