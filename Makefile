@@ -4,7 +4,8 @@
 #   PREFIX=   where `make install` goes
 #   TESTS=    build and run only the tests that match this regular expression
 #   JSON=     also write the table of `make hardcases` or `make mutants` to this file
-#   SHARE=    run this share of the hard cases' inputs; SUITES= some suites' alone
+#   SHARE=    run only this share of the hard cases' inputs
+#   SUITES=   run the hard cases of these suites only
 DEVICE ?=
 PREFIX ?= /usr/local
 TESTS ?= .

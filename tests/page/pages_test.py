@@ -163,6 +163,9 @@ def check_levels(view):
         check(f"{view.where} draws the picture of {card['name']}", off < 16, off)
         if card["name"] == "full light transport":
             continue
+        check(f"{view.where} has linked figures for {card['name']}", card["figures"])
+        if not card["figures"]:
+            continue
         below = card["figures"]["y"] - card["image"]["bottom"]
         check(f"{view.where} has figures below {card['name']}", 0 <= below < 60 and
               abs(card["figures"]["x"] - card["image"]["x"]) < 8 and card["figures"]["right"] <= card["image"]["right"] + 1, card)
