@@ -153,7 +153,14 @@ void check_remaining(const CommandSpec& program, const CommandSpec& command, con
                (takes.empty() ? "options only" : takes));
 }
 
-void store_all(const CommandSpec& command, OptionSpec* option, const CLI::results_t& texts) {
+// Refuses an option of the command as the value of another.
+void check_value(const CommandSpec& command, const OptionSpec& option, const CLI::results_t& texts) {
+  if (option.is_positional || option.kind == ValueKind::flag) return;
+  for (const std::string& text : texts)
+    if (is_option(command, text)) refuse_without_value(option);
+}
+
+void store_all(OptionSpec* option, const CLI::results_t& texts) {
   option->count = texts.size();
   const std::string& name = option->names[0];
   if (texts.size() > 1 && !option->is_list) refuse_usage(name + " is given twice: give it once");
@@ -161,8 +168,6 @@ void store_all(const CommandSpec& command, OptionSpec* option, const CLI::result
     if (option->kind == ValueKind::flag) {
       if (!text.empty()) refuse_usage(name + " takes no value, here " + quoted(text));
       option->store("");
-    } else if (!option->is_positional && is_option(command, text)) {
-      refuse_without_value(*option);
     } else if (!text.empty() || !option->value_is_optional) {
       store(option, text);
     }
@@ -213,8 +218,9 @@ std::string read_options(const CommandSpec& program, CommandSpec* command, const
     refuse_without_value(*last);
   } catch (const CLI::RequiredError&) {  // check_presence() tells of it
   }
+  for (const auto& read : reader) check_value(*command, *read.first, read.second->results());
   check_remaining(program, *command, app.remaining());
-  for (const auto& read : reader) store_all(*command, read.first, read.second->results());
+  for (const auto& read : reader) store_all(read.first, read.second->results());
   check_presence(*command);
   return "";
 }

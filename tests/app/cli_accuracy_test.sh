@@ -31,7 +31,7 @@ if "${run[@]}" --help | grep -q '^ *accuracy '; then
   expect bake_with_few_patches 0 'radiosity: [0-9]{2,3} patches' bake cube --radiosity --patches 60 -o few.pray
   check few_patches_store_less test "$(stat -c %s few.pray)" -lt $(($(stat -c %s lit.pray) / 4))
   expect patches_without_radiosity 1 'patches applies to --radiosity' bake cube --patches 60 -o few.pray
-  expect patches_beyond_limits 1 'range 20 to 5000' bake cube --radiosity --patches 9 -o few.pray
+  expect patches_beyond_limits 1 'it must lie in 20 … 5000' bake cube --radiosity --patches 9 -o few.pray
   expect accuracy_of_lit 0 'index.html for the results' accuracy lit.pray "${tiny[@]}" -o lit --rounds 1
   for method in none ambient radiosity instant-radiosity; do
     check "accuracy_has_$method" grep -q "^several,.*,$method\$" lit/accuracy.csv
