@@ -33,6 +33,19 @@ double seconds_left(TimeEstimate* e, double elapsed, double share) {
   return e->is_steady && share >= kShareMin ? (1 - share) / e->speed : -1;
 }
 
+void format_left(double elapsed, double left, const LaterWork& later, char (&text)[kLeftTextMax]) {
+  CHECK(elapsed >= 0 && later.seconds >= 0 && later.share >= 0);
+  text[0] = 0;
+  if (!(left >= 0)) return;
+  const double all = left + later.seconds + later.share * (elapsed + left);
+  if (later.seconds == 0 && later.share == 0)
+    std::snprintf(text, sizeof text, ", %.0f s left", left);
+  else if (all < 90)
+    std::snprintf(text, sizeof text, ", %.0f s left, about %.0f s in all", left, all);
+  else
+    std::snprintf(text, sizeof text, ", %.0f s left, about %.0f min in all", left, all / 60);
+}
+
 void show_progress(Progress* p, std::uint64_t done) {
   constexpr std::uint64_t kSecond = 1000000000;
   // Chosen: ten times per second looks continuous, a line every 10 s keeps logs short, and work of less than a second
@@ -40,12 +53,13 @@ void show_progress(Progress* p, std::uint64_t done) {
   std::uint64_t now = clock_ns(), interval = p->terminal ? kSecond / 10 : 10 * kSecond;
   if (done == 0 || p->total == 0) return;
   const double share = done < p->total ? static_cast<double>(done) / static_cast<double>(p->total) : 1;
-  const double left = seconds_left(&p->estimate, static_cast<double>(now - p->start_ns) * 1e-9, share);
+  const double elapsed = static_cast<double>(now - p->start_ns) * 1e-9;
+  const double left = seconds_left(&p->estimate, elapsed, share);
   if (now - p->start_ns < kSecond || (p->shown && now - p->shown_ns < interval)) return;
   p->shown_ns = now;
   p->shown = true;
-  char left_text[32] = "";
-  if (left >= 0) std::snprintf(left_text, sizeof left_text, ", %.0f s left", left);
+  char left_text[kLeftTextMax];
+  format_left(elapsed, left, p->later, left_text);
   if (p->terminal) {
     char bar[31];
     int filled = static_cast<int>(share * 30);

@@ -2,6 +2,7 @@
 // Allocates nothing.
 #pragma once
 #include <atomic>
+#include <cstddef>
 #include <cstdint>
 
 namespace pocketray {
@@ -17,8 +18,15 @@ struct TimeEstimate {
 // Windows grow with the elapsed time. Call it often.
 double seconds_left(TimeEstimate* estimate, double elapsed, double share);
 
+// Estimate of the work that follows: a time, and a multiple of the time that the work before it takes. None if both are
+// 0.
+struct LaterWork {
+  double seconds = 0, share = 0;
+};
+
 struct Progress {
   const char* what = "";
+  LaterWork later;
   std::uint64_t total = 0;
   std::uint64_t start_ns = 0, shown_ns = 0;
   TimeEstimate estimate;
@@ -26,6 +34,10 @@ struct Progress {
 };
 
 Progress start_progress(const char* what, std::uint64_t total);
+// Writes the remaining time as a person would say it, with that of everything if there is later work: "40 s left, about
+// 3 min in all"; nothing while `left`, of `elapsed` and more seconds, is unknown, which is negative.
+constexpr std::size_t kLeftTextMax = 64;
+void format_left(double elapsed, double left, const LaterWork& later, char (&text)[kLeftTextMax]);
 // Call as often as you like; prints at most ten times per second (terminal) or every ten seconds.
 void show_progress(Progress* progress, std::uint64_t done);
 // Clears the bar.

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <initializer_list>
+#include <string>
 
 using namespace pocketray;
 
@@ -60,4 +61,18 @@ TEST_CASE("progress_estimates_after_a_slow_start") {
   }
   CHECK(late < 100);  // until the elapsed time has doubled once more
   CHECK(right > 300);
+}
+
+// Goal: the remaining time includes work that follows. Method: closed forms, in seconds and in minutes.
+TEST_CASE("progress_tells_of_later_work") {
+  const auto text_of = [](double elapsed, double left, const LaterWork& later) {
+    char text[kLeftTextMax];
+    format_left(elapsed, left, later, text);
+    return std::string(text);
+  };
+  CHECK(text_of(10, -1, {20, 1}) == "");
+  CHECK(text_of(10, 40, {}) == ", 40 s left");
+  CHECK(text_of(10, 40, {20, 0}) == ", 40 s left, about 60 s in all");
+  CHECK(text_of(10, 40, {30, 0.25}) == ", 40 s left, about 82 s in all");
+  CHECK(text_of(60, 60, {0, 1}) == ", 60 s left, about 3 min in all");
 }

@@ -29,6 +29,7 @@ ReferenceGauge::ReferenceGauge(const ReferenceGoal& g, const Rig* r, const Accum
   text = std::string(name_of(goal.transport)) + " reference";
   most = goal.samples ? std::uint64_t(batch_count / goal.part_count + 1) * accumulation->height : 0;
   progress = start_progress(text.c_str(), most);
+  progress.later = goal.later;
 }
 
 std::uint32_t half_samples(const ReferenceGoal& goal) {

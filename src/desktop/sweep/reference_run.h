@@ -32,6 +32,7 @@ struct ReferenceGoal {
   std::string path;                             // of its file
   Team team;                                    // ranks that take the samples
   double save_seconds = 60;                     // between saves
+  LaterWork later;                              // for the progress
   std::function<void(std::uint32_t)> row_done;  // called after each row's samples, one at a time; may be null
 };
 

@@ -82,8 +82,8 @@ Status name_reference(AccuracyOptions* options) {
   return success();
 }
 
-Status render_reference(const AccuracyOptions& options, Transport transport, Rig* rig, AccuracyState* state,
-                        ReferencePictures* pictures, bool* whole) {
+Status render_reference(const AccuracyOptions& options, Transport transport, const LaterWork& later, Rig* rig,
+                        AccuracyState* state, ReferencePictures* pictures, bool* whole) {
   CHECK(rig != nullptr && state != nullptr && pictures != nullptr && whole != nullptr);
   const Settings& settings = rig->opened.renderer.settings;
   std::string name = std::string("reference-") + name_of(transport), path = options.folder + "/" + name + ".pfm";
@@ -105,6 +105,7 @@ Status render_reference(const AccuracyOptions& options, Transport transport, Rig
       goal.save_seconds = options.save_seconds;
       goal.row_done = options.row_done;
       goal.team = options.team;
+      goal.later = later;
       goal.path = cached_path(options.common.scene, accumulation.key);
       if (goal.path.empty()) goal.path = path;
       continue_from(goal.path, &accumulation);

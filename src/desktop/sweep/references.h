@@ -13,8 +13,8 @@ Status name_reference(AccuracyOptions* options);
 
 // Takes the reference's samples with all threads: those in the sweep's folder, otherwise those in the options' file,
 // otherwise those in the scene's cached file plus as many more as the options request. After an interrupt *whole is
-// false; the next call continues.
-Status render_reference(const AccuracyOptions& options, Transport transport, Rig* rig, AccuracyState* state,
-                        ReferencePictures* pictures, bool* whole);
+// false; the next call continues. `later`: told with the progress.
+Status render_reference(const AccuracyOptions& options, Transport transport, const LaterWork& later, Rig* rig,
+                        AccuracyState* state, ReferencePictures* pictures, bool* whole);
 
 }  // namespace pocketray

@@ -30,6 +30,8 @@ namespace {
 // Baseline measurements per round; all others are divided by them.
 constexpr int kBaselineRuns = 3;
 constexpr std::uint32_t kRoundsMax = 1000;
+// Time of a sample of full light transport, in samples of the lighting model: 1.0 to 5.5 in eight scenes.
+constexpr double kPhysicalSamplePrice = 2;
 
 struct SweepRun {
   const AccuracyOptions& options;
@@ -159,14 +161,44 @@ Status check_state(const SweepRun& run) {
                        run.options.folder.c_str());
 }
 
+double price_of_round(const SweepRun& run) {
+  double price = 0;
+  for (std::size_t i : round_order(run.plan, 0)) price += run.plan.points[i].price;
+  return price;
+}
+
+// Time that the rounds to come will take, from a frame of the baseline and one comparison; 0 after an interrupt.
+Status forecast_rounds(SweepRun* run, double* seconds) {
+  const SweepPoint& baseline = run->plan.points[0];
+  Rig* rig;
+  RETURN_IF_ERROR(rig_for(&run->rigs, baseline.configuration, &rig));
+  const std::uint64_t start = clock_ns();
+  double ns_per_pixel;
+  RETURN_IF_ERROR(time_frame(rig, baseline.configuration, run->options.seconds, &ns_per_pixel));
+  const std::uint64_t rendered = clock_ns();
+  const Settings& settings = baseline.configuration.settings;
+  const std::vector<float> black(std::size_t(3) * settings.width * settings.height, 0.0f);
+  flip_errors(black, black, settings.width, settings.height, run->options.pixels_per_degree);
+  constexpr double kComparisons = 9;  // of a point: two references and their halves, and other formats
+  const double frame_seconds = static_cast<double>(rendered - start) * 1e-9;
+  const double comparison_seconds = static_cast<double>(clock_ns() - rendered) * 1e-9;
+  double compared = 0;
+  for (const SweepPoint& point : run->plan.points)
+    if (const auto known = run->state.points.find(id_of(point));
+        known == run->state.points.end() || !known->second.has_errors)
+      ++compared;
+  *seconds = frame_seconds * price_of_round(*run) * (run->options.rounds - run->state.rounds) +
+             comparison_seconds * kComparisons * compared;
+  if (interrupted) *seconds = 0;
+  return success();
+}
+
 Status measure_rounds(SweepRun* run, bool* whole) {
   *whole = true;
   if (run->state.rounds >= run->options.rounds) return success();
-  double price = 0;
-  for (std::size_t i : round_order(run->plan, 0)) price += 1000 * run->plan.points[i].price;
+  const double price = 1000 * price_of_round(*run) * (run->options.rounds - run->state.rounds);
   RoundProgress progress;
-  progress.progress =
-      start_progress("configurations", static_cast<std::uint64_t>(price * (run->options.rounds - run->state.rounds)));
+  progress.progress = start_progress("configurations", static_cast<std::uint64_t>(price));
   Status status;
   while (*whole && status.ok && run->state.rounds < run->options.rounds) {
     status = measure_round(run, &progress, whole);
@@ -217,9 +249,16 @@ Status render_references(SweepRun* run, Sweep* sweep, bool* whole) {
   Rig* rig;
   RETURN_IF_ERROR(reference_rig(&run->rigs, &rig));
   const ReferencePictures &truth = run->judges.truth, &model = run->judges.model;
-  RETURN_IF_ERROR(render_reference(run->options, Transport::model, rig, &run->state, &run->judges.model, whole));
+  LaterWork later;
+  RETURN_IF_ERROR(forecast_rounds(run, &later.seconds));
+  LaterWork physical = later;
+  physical.share = kPhysicalSamplePrice * reference_samples(run->options, Transport::physical) /
+                   reference_samples(run->options, Transport::model);
+  RETURN_IF_ERROR(
+      render_reference(run->options, Transport::model, physical, rig, &run->state, &run->judges.model, whole));
   if (!*whole) return success();
-  RETURN_IF_ERROR(render_reference(run->options, Transport::physical, rig, &run->state, &run->judges.truth, whole));
+  RETURN_IF_ERROR(
+      render_reference(run->options, Transport::physical, later, rig, &run->state, &run->judges.truth, whole));
   if (!*whole) return success();
   sweep->truth = figures_of(truth), sweep->model = figures_of(model);
   sweep->reference_picture = model.levels, sweep->truth_picture = truth.levels;
