@@ -44,7 +44,7 @@ endif
 BUILD := $(if $(CROSS_PREFIX),build-$(CLASS)-$(notdir $(CROSS_PREFIX:%-=%)),build$(CLASS:%=-%))
 POCKETRAY := $(BUILD)/pocketray
 
-.PHONY: all run setup-tests test test-box hardcases pages softfloat mutants trials faults demo-split split-table motion-table fuzz flips bench bench-embree bench-povray bench-device contact-sheet mach-bands rooms package format tidy clean install help setup configure
+.PHONY: all run setup-tests test test-box hardcases pages softfloat mutants trials faults demo-split split-table motion-table fuzz flips bench bench-embree bench-povray bench-device contact-sheet mach-bands rooms governor package format tidy clean install help setup configure
 all: configure
 	cmake --build $(BUILD) -j$(JOBS)$(if $(CLASS), --target pocketray)
 ifneq ($(CLASS),)
@@ -222,6 +222,14 @@ rooms: setup-tests configure
 	cmake --build $(BUILD) -j$(JOBS) --target measure_rooms
 	$(BUILD)/measure_rooms --rounds 6 --lights --gaps --random $(ROOMS) $(ROOM_FILES)
 
+# What --budget-ms chooses, beside the best of an exhaustive search: a table of these scenes, about 25 minutes.
+S = ../shared/scenes
+GOVERNOR_SCENES ?= cornell seesaw $(wildcard $(S)/cornell/mcguire/CornellBox-Original.obj \
+  $(S)/cornell/bevy_CornellBox.glb $(S)/rooms/vr-gallery.glb $(S)/rooms/glass-table.glb $(S)/gltf/Duck.glb $(S)/gltf/Fox.glb \
+  $(S)/gltf/DamagedHelmet.glb $(S)/gltf/LightsPunctualLamp/LightsPunctualLamp.gltf) lanterns
+governor: setup-tests all
+	tests/accuracy/governor_oracle.py $(POCKETRAY) $(BUILD)/governor $(GOVERNOR_SCENES)
+
 # Mach bands of radiosity by each reconstruction: a table, and the cube as [Bastos92] figs. 6 and 7 show it.
 mach-bands: setup-tests configure
 	cmake --build $(BUILD) -j$(JOBS) --target draw_bands
@@ -289,6 +297,7 @@ help:
 	@echo "make faults       simulate SESSIONS=$(SESSIONS) sessions in which links and servers fail (SEED=n: start at that one)"
 	@echo "make fuzz         run libFuzzer on messages and files, FUZZ_SECONDS=$(FUZZ_SECONDS) per target"
 	@echo "make flips        flip bits of the sample models FLIPS=$(FLIPS) times, import and render them (FLIP=n: just that one)"
+	@echo "make governor     compare --budget-ms with an exhaustive search of settings on eleven scenes, 25 minutes"
 	@echo "make demo-split   run a render server and an emulated handheld (SCENE=, EMULATE=)"
 	@echo "make split-table  compare the chosen split with the best fixed one, for every device"
 	@echo "make motion-table measure motion to photon with a server, over links that lose packets"

@@ -62,9 +62,7 @@ template <EffectMask mask>
 inline bool is_negligible(Tracer* tracer, const LitSurface& to, const Vec3& light_out) {
   const float bound = max_component(light_out * to.weight);
   if (!(bound > 0)) return true;
-  if (!leave_out(tracer, bound)) return false;
-  if constexpr (!has(mask, Effect::shadow)) --tracer->rays_left_out;
-  return true;
+  return has(mask, Effect::shadow) ? leave_out(tracer, bound) : leave_out_light(tracer, bound);
 }
 
 }  // namespace pocketray

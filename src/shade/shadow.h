@@ -31,12 +31,17 @@ constexpr EffectMask kPassageEffects = bit(Effect::refraction) | bit(Effect::abs
 
 // Returns whether to skip a contribution of at most `bound`: the total skipped of a sample stays below half the
 // narrowest display level, so no pixel changes by more than one level.
-inline bool leave_out(Tracer* tracer, float bound) {
+inline bool leave_out_light(Tracer* tracer, float bound) {
   if (!(bound <= tracer->skip_max)) return false;
   tracer->budget -= bound;
   tracer->skip_max = std::min(tracer->skip_max, tracer->budget);
-  ++tracer->rays_left_out;
   return true;
+}
+// As above, for light that a ray would have tested.
+inline bool leave_out(Tracer* tracer, float bound) {
+  const bool left_out = leave_out_light(tracer, bound);
+  tracer->rays_left_out += left_out;
+  return left_out;
 }
 
 // Transmittance of a contact for an unrefracted ray: Fresnel once, from the body that ends to the one that begins (air

@@ -23,7 +23,7 @@ Vec3 vertex_color(const Scene& scene, const Triangle& t, float u, float v) {
     return Vec3{static_cast<float>(c.r), static_cast<float>(c.g), static_cast<float>(c.b)} * (1.0f / 65535.0f);
   };
   const Vec3 first = at(0);
-  return first + (at(1) - first) * u + (at(2) - first) * v;  // exact where equal
+  return max(first + (at(1) - first) * u + (at(2) - first) * v, {0, 0, 0});  // exact where equal, whatever u and v
 }
 
 // Moves a point that lies on an edge of its triangle, within rounding, slightly towards the middle. From a point beside
