@@ -6,7 +6,6 @@
 #include <cstdlib>
 
 #include "app/command_spec.h"
-#include "base/check.h"
 #include "base/nearest_word.h"
 
 namespace pocketray {
@@ -129,11 +128,15 @@ CLI::Option* declare(const OptionSpec& option, CLI::App* app) {
   return declared->allow_extra_args(option.is_list && !option.one_value_each);
 }
 
-// Refuses what CLI11 would take for a value: "-output" is no value of -o.
-void check_short_names(const CommandSpec& program, const CommandSpec& command, const std::vector<std::string>& words) {
-  for (const std::string& word : words)
-    if (word.size() > 2 && word[0] == '-' && word[1] != '-' && find_option(command, "-" + name_of(word)))
+// Refuses what CLI11 would read otherwise: "-output" is no value of -o, and "--size=" takes no word after it.
+void check_words(const CommandSpec& program, const CommandSpec& command, const std::vector<std::string>& words) {
+  for (const std::string& word : words) {
+    const std::string name = name_of(word);
+    if (word.size() > 2 && word[0] == '-' && word[1] != '-' && find_option(command, "-" + name))
       refuse_option(program, command, word);
+    const OptionSpec* option = looks_like_option(word) ? find_option(command, name) : nullptr;
+    if (option && word == name + "=" && option->kind != ValueKind::flag) refuse_value(name + " must not be empty");
+  }
 }
 
 [[noreturn]] void refuse_without_value(const OptionSpec& option) {
@@ -204,7 +207,7 @@ std::string read_options(const CommandSpec& program, CommandSpec* command, const
   const auto help = std::find_if(words.begin(), words.end(), is_help);
   if (help != words.end()) return help_after(program, *command, help + 1 == words.end() ? "" : help[1], style);
   if (std::any_of(words.begin(), words.end(), is_help_all)) return command_help(*command, true, style);
-  check_short_names(program, *command, words);
+  check_words(program, *command, words);
   CLI::App app;
   app.set_help_flag();
   app.allow_extras();
@@ -213,10 +216,12 @@ std::string read_options(const CommandSpec& program, CommandSpec* command, const
   try {
     app.parse(std::vector<std::string>(words.rbegin(), words.rend()));  // CLI11 takes the last word first
   } catch (const CLI::ArgumentMismatch&) {
-    const OptionSpec* last = find_option(*command, words.back());
-    CHECK(last != nullptr);  // the only place where a value can be missing
-    refuse_without_value(*last);
+    // Only the last word can lack a value.
+    if (const OptionSpec* last = find_option(*command, words.back())) refuse_without_value(*last);
+    refuse_usage(quoted(words.back()) + " needs a value");
   } catch (const CLI::RequiredError&) {  // check_presence() tells of it
+  } catch (const CLI::ParseError&) {
+    refuse_usage("these words are no options: `" + full_name(*command) + " --help` lists them");
   }
   for (const auto& read : reader) check_value(*command, *read.first, read.second->results());
   check_remaining(program, *command, app.remaining());

@@ -157,11 +157,12 @@ std::vector<FuzzSeed> text_seeds() {
       seed("exposure", 3, "-1.5"),
       seed("effects", 4, "auto,-shadow"),
       seed("callgrind", 5, "version: 1\ndesc: Trigger: --dump-before=work\nevents: Ir\ntotals: 123456\n"),
-      seed("state", 6,
-           R"({"key": {}, "rounds": 1, "counted": "", "references": ["a"], "points": {"samples 4": )"
-           R"({"ns_per_pixel": [812.5], "instructions_per_pixel": "none", "bytes_per_frame": 9500.5, "errors": [0.1, )"
-           R"(0.01, 0.1, 0.1, 0.1, 0.1, "inf"], "truth": {"flip": 0.2, "one": [0.2, 0.25], "other": [0.2, 0.15]}, )"
-           R"("model": {"flip": 0.1, "one": [0.1], "other": [0.1]}, "flip_as": [0.2, 0.2, 0.15]}}})")};
+      seed(
+          "state", 6,
+          R"({"key": {}, "rounds": 1, "counted": "", "references": ["a"], "points": {"samples 4": )"
+          R"({"ns_per_pixel": [812.5], "instructions_per_pixel": "none", "bytes_per_frame": 9500.5, "stored_bytes": 1e6, )"
+          R"("bake_seconds": "none", "errors": [0.1, 0.01, 0.1, 0.1, 0.1, 0.1, "inf"], "truth": {"flip": 0.2, "one": [0.2, 0.25], "other": [0.2, 0.15]}, )"
+          R"("model": {"flip": 0.1, "one": [0.1], "other": [0.1]}, "flip_as": [0.2, 0.2, 0.15]}}})")};
 }
 
 // A well-behaved server with each kind of device; then one that changes, drops, repeats and adds messages.
