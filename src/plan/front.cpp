@@ -116,7 +116,7 @@ Front prices_alone(const Front& front) {
 bool lacks_indirect_light(EffectMask effects) {
   constexpr EffectMask kLights =
       bit(Effect::point_light) | bit(Effect::spot_light) | bit(Effect::directional_light) | bit(Effect::area_light);
-  return has(effects, Effect::ambient) && (effects & kLights) != 0;
+  return !has(effects, Effect::radiosity) && (effects & kLights) != 0;
 }
 
 Front builtin_front(EffectMask effects) {

@@ -58,8 +58,8 @@ bool adopt_prices(Front* front, const Front& measured);
 // Drops the errors, which the scene's front holds, so that no candidate is dominated and every price is kept.
 Front prices_alone(const Front& front);
 
-// True if light from other surfaces is a constant in a plan with these effects, though the scene has lights that cause
-// it: instant radiosity is nearer to the truth.
+// True if light from other surfaces is a constant or left out in a plan with these effects, though the scene has lights
+// that cause it: instant radiosity is nearer to the truth.
 bool lacks_indirect_light(EffectMask effects);
 
 // The default front when nothing was measured of a scene whose plan has these effects: from the least to the most that

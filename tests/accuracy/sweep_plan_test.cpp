@@ -172,7 +172,10 @@ TEST_CASE("sweep_plan_combines_the_settings_of_each_method") {
   CHECK((count_of("ambient", 1) == 1 && count_of("ambient", 4) == 1));
   CHECK((count_of("radiosity", 1) == 4 + 1 && count_of("radiosity", 4) == 5));  // also asked for by name
   CHECK(count_of("instant-radiosity", 1) == 6 * 2);
-  CHECK(count_of("instant-radiosity", 4) == 5 * 2);  // 512 lights are beyond the limit
+  CHECK(count_of("instant-radiosity", 4) == 6 * 2);
+  const SweepPlan cheap = plan_sweep("file.pray", effects, Configuration(), always, 8, {}, effects_with);
+  for (const SweepPoint& p : cheap.points)  // beyond twice the limit
+    CHECK((p.configuration.settings.virtual_lights < 512 || p.configuration.settings.samples_per_pixel < 4));
   for (const Settings& s : compared["ambient"]) CHECK((s.virtual_lights == 64 && s.compensation == Compensation::none));
   stores_it = false, effects.mask = bit(Effect::ambient);
   plan = plan_sweep("file.pray", effects, Configuration(), always, 16, {}, effects_with);

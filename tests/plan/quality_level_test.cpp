@@ -75,9 +75,11 @@ TEST_CASE("medium is the default, and each built-in level is at least as accurat
   }
 }
 
-// Goal: the upper levels find light from wall to wall where a constant stands for it and lights cause it.
-TEST_CASE("high quality replaces the constant ambient light of lit scenes") {
+// Goal: the upper levels find light from wall to wall where lights cause it, whether a constant stands for it or nothing.
+TEST_CASE("high quality finds the indirect light of lit scenes") {
   const EffectMask lit = bit(Effect::ambient) | bit(Effect::area_light);
+  CHECK(builtin_level(QualityLevel::high, bit(Effect::point_light)).indirect ==
+        indirect_choice(Effect::instant_radiosity));
   for (QualityLevel level : {QualityLevel::high, QualityLevel::best}) {
     CHECK(builtin_level(level, lit).indirect == indirect_choice(Effect::instant_radiosity));
     CHECK(builtin_level(level, bit(Effect::ambient)).indirect == IndirectChoice::automatic);

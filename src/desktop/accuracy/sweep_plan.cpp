@@ -124,8 +124,9 @@ void add_settings(const Settings& settings, const std::vector<const Knob*>& knob
 
 // Rays per pixel in comparisons of methods, since smooth edges count as much as indirect light.
 constexpr std::uint32_t kMethodSamples = 4;
-// A ladder has few settings, so each may take this many times as long as others.
-constexpr double kLadderLimit = 4;
+// Methods at kMethodSamples and a ladder are few settings, so each may take this many times as long as others. Where a
+// frame is cheap, virtual lights cost many times as much, and are worth it: seesaw, CornellBox-Original.
+constexpr double kMethodLimit = 2, kLadderLimit = 4;
 
 // Adds each method of indirect light with every combination of its own settings, at the baseline's samples and at
 // kMethodSamples.
@@ -154,7 +155,7 @@ void add_methods(const std::function<Status(const Settings&)>& can_be_had, doubl
     for (Settings each : combined)
       for (std::uint32_t samples : {baseline.samples_per_pixel, kMethodSamples}) {
         each.samples_per_pixel = samples;
-        add_settings(each, knobs, can_be_had, price_limit, plan);
+        add_settings(each, knobs, can_be_had, kMethodLimit * price_limit, plan);
       }
   };
   add_method(choice.field.get(baseline));
