@@ -39,6 +39,7 @@ struct SweepRun {
   SweepPlan plan;
   AccuracyState state;
   Judges judges;
+  double comparison_price = 0;  // of a point's first picture, in frames of the baseline
 };
 
 Json settings_json(const Quality& quality) {
@@ -131,6 +132,7 @@ Status measure_round(SweepRun* run, RoundProgress* progress, bool* whole) {
     times[i].push_back(ns_per_pixel);
     PointFigures* f = &run->state.points[id_of(point)];
     const bool counts_bytes = i == 0 || point.configuration.near_lossless;
+    if (!f->has_errors) progress->done += 1000 * run->comparison_price;
     if (!f->has_errors)
       RETURN_IF_ERROR(find_errors(run->options, run->judges, counts_bytes, point.configuration, rig, f));
     if (i == 0 || !is_as_opened(point.configuration.bake)) f->stored_bytes = rig->stored_bytes;
@@ -167,7 +169,16 @@ double price_of_round(const SweepRun& run) {
   return price;
 }
 
-// Time that the rounds to come will take, from a frame of the baseline and one comparison; 0 after an interrupt.
+std::uint32_t uncompared_points(const SweepRun& run) {
+  std::uint32_t count = 0;
+  for (const SweepPoint& point : run.plan.points) {
+    const auto known = run.state.points.find(id_of(point));
+    count += known == run.state.points.end() || !known->second.has_errors;
+  }
+  return count;
+}
+
+// Forecasts the time of the rounds to come from a frame of the baseline and one comparison; 0 after an interrupt.
 Status forecast_rounds(SweepRun* run, double* seconds) {
   const SweepPoint& baseline = run->plan.points[0];
   Rig* rig;
@@ -181,14 +192,10 @@ Status forecast_rounds(SweepRun* run, double* seconds) {
   flip_errors(black, black, settings.width, settings.height, run->options.pixels_per_degree);
   constexpr double kComparisons = 9;  // of a point: two references and their halves, and other formats
   const double frame_seconds = static_cast<double>(rendered - start) * 1e-9;
-  const double comparison_seconds = static_cast<double>(clock_ns() - rendered) * 1e-9;
-  double compared = 0;
-  for (const SweepPoint& point : run->plan.points)
-    if (const auto known = run->state.points.find(id_of(point));
-        known == run->state.points.end() || !known->second.has_errors)
-      ++compared;
+  const double comparison_seconds = kComparisons * static_cast<double>(clock_ns() - rendered) * 1e-9;
+  run->comparison_price = comparison_seconds / std::max(frame_seconds, 1e-6);
   *seconds = frame_seconds * price_of_round(*run) * (run->options.rounds - run->state.rounds) +
-             comparison_seconds * kComparisons * compared;
+             comparison_seconds * uncompared_points(*run);
   if (interrupted) *seconds = 0;
   return success();
 }
@@ -196,7 +203,8 @@ Status forecast_rounds(SweepRun* run, double* seconds) {
 Status measure_rounds(SweepRun* run, bool* whole) {
   *whole = true;
   if (run->state.rounds >= run->options.rounds) return success();
-  const double price = 1000 * price_of_round(*run) * (run->options.rounds - run->state.rounds);
+  const double price = 1000 * (price_of_round(*run) * (run->options.rounds - run->state.rounds) +
+                               run->comparison_price * uncompared_points(*run));
   RoundProgress progress;
   progress.progress = start_progress("configurations", static_cast<std::uint64_t>(price));
   Status status;
