@@ -72,7 +72,7 @@ expect version_of_files 0 "files, version $(sed -n 's/^constexpr std::uint32_t k
 
 # Goal: prices in help are those of tests/accuracy/FIGURES.md, for every setting that has a row there.
 settings=0
-while IFS='|' read -r _ name values ms _ flip _; do
+while IFS='|' read -r _ name values ms flip _; do
   case $name in ' setting ' | ' output ') continue ;; esac  # the head; the screen's format
   name=$(xargs <<<"$name") values=$(xargs <<<"$values") ms=$(xargs <<<"$ms") flip=$(xargs <<<"$flip")
   "${run[@]}" help render "$name" >one 2>&1
