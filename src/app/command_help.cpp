@@ -68,8 +68,8 @@ std::string entry_name(const OptionSpec& option) {
   std::string name = option.names[0];
   for (const std::string& each : option.names)
     if (each.size() == 2 && option.names[0].size() > 2) name = each + ", " + name;
-  if (option.placeholder.empty()) return name;
-  return name + " " + (option.value_is_optional ? "[" + option.placeholder + "]" : option.placeholder);
+  if (option.metavar.empty()) return name;
+  return name + " " + (option.value_is_optional ? "[" + option.metavar + "]" : option.metavar);
 }
 
 // In full, or on one line: then without a range, and with its default in brackets.
@@ -119,7 +119,7 @@ std::string usage_of(const CommandSpec& command) {
     if (option->is_positional) text += option->is_required ? " " + option->names[0] : " [" + option->names[0] + "]";
   for (const auto& option : command.options)
     if (!option->is_positional && option->is_required)
-      text += " " + option->names.back() + (option->placeholder.empty() ? "" : " " + option->placeholder);
+      text += " " + option->names.back() + (option->metavar.empty() ? "" : " " + option->metavar);
   return text + " [options]";
 }
 

@@ -13,11 +13,11 @@
 namespace pocketray {
 namespace {
 
-// "-o,--output FILE" → names, the long one first, and placeholder.
+// "-o,--output FILE" → names, the long one first, and metavar.
 void split_name(const std::string& text, OptionSpec* option) {
   const std::size_t space = text.find(' ');
   std::string names = text.substr(0, space);
-  if (space != std::string::npos) option->placeholder = text.substr(space + 1);
+  if (space != std::string::npos) option->metavar = text.substr(space + 1);
   option->is_positional = names[0] != '-';
   for (std::size_t comma; !names.empty(); names = comma == std::string::npos ? "" : names.substr(comma + 1)) {
     comma = names.find(',');
@@ -25,9 +25,9 @@ void split_name(const std::string& text, OptionSpec* option) {
   }
   std::stable_partition(option->names.begin(), option->names.end(),
                         [](const std::string& name) { return name.compare(0, 2, "--") == 0; });
-  if (option->placeholder[0] != '[') return;
+  if (option->metavar[0] != '[') return;
   option->value_is_optional = true;
-  option->placeholder = option->placeholder.substr(1, option->placeholder.size() - 2);
+  option->metavar = option->metavar.substr(1, option->metavar.size() - 2);
 }
 
 OptionSpec* declare(CommandSpec* command, const std::string& name, ValueKind kind, const std::string& help) {
@@ -36,8 +36,8 @@ OptionSpec* declare(CommandSpec* command, const std::string& name, ValueKind kin
   option->kind = kind;
   option->help = help;
   option->chapter = command->chapter;
-  if (option->placeholder.empty() && !option->is_positional)
-    option->placeholder = kind == ValueKind::text ? "VALUE" : kind == ValueKind::whole_number ? "N" : "X";
+  if (option->metavar.empty() && !option->is_positional)
+    option->metavar = kind == ValueKind::text ? "VALUE" : kind == ValueKind::whole_number ? "N" : "X";
   for (const std::string& each : option->names) CHECK(find_option(*command, each) == nullptr);
   command->options.push_back(std::move(option));
   return command->options.back().get();
@@ -172,7 +172,7 @@ Option Command::add_option(const std::string& name, double& variable, const std:
 
 Option Command::add_flag(const std::string& name, bool& variable, const std::string& help) {
   OptionSpec* option = declare(spec_, name, ValueKind::flag, help);
-  option->placeholder = "";
+  option->metavar = "";
   option->store = [&variable](const std::string&) { return variable = true; };
   return Option(option);
 }

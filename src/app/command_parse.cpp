@@ -141,7 +141,7 @@ void check_words(const CommandSpec& program, const CommandSpec& command, const s
 
 [[noreturn]] void refuse_without_value(const OptionSpec& option) {
   const std::string allowed = allowed_values(option), &name = option.names[0];
-  refuse_usage(name + " needs a value: " + name + " " + option.placeholder + (allowed.empty() ? "" : ", " + allowed));
+  refuse_usage(name + " needs a value: " + name + " " + option.metavar + (allowed.empty() ? "" : ", " + allowed));
 }
 
 // Refuses the first word that is neither an option nor an argument's.
@@ -180,8 +180,8 @@ void store_all(OptionSpec* option, const CLI::results_t& texts) {
 void check_presence(const CommandSpec& command) {
   for (const auto& option : command.options) {
     if (option->is_required && option->count == 0)
-      refuse_usage(command.name + " needs " + option->names[0] +
-                   (option->is_positional ? "" : " " + option->placeholder) + ": " + option->help);
+      refuse_usage(command.name + " needs " + option->names[0] + (option->is_positional ? "" : " " + option->metavar) +
+                   ": " + option->help);
     if (option->count == 0) continue;
     for (const OptionSpec* other : option->needs)
       if (other->count == 0) refuse_usage(option->names[0] + " needs " + other->names[0] + ": add it");

@@ -1,4 +1,4 @@
-// What is declared of commands and options: command_line.cpp fills it, command_parse.cpp and command_help.cpp read it.
+// Declarations of commands and options: command_line.cpp fills them, command_parse.cpp and command_help.cpp read them.
 #pragma once
 #include "app/command_line.h"
 
@@ -14,7 +14,7 @@ struct Exclusion {
 struct OptionSpec {
   std::vector<std::string> names;  // with hyphens, the one for messages first; a positional's name has none
   ValueKind kind = ValueKind::text;
-  std::string placeholder;  // stands for the value
+  std::string metavar;  // stands for the value in help: "WxH"
   std::string help, details, price, chapter;
   std::string default_text;
   bool is_positional = false, is_required = false, is_hidden = false;

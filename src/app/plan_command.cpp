@@ -98,7 +98,7 @@ Json levels_json(const Renderer& renderer, const Levels& levels) {
   return list;
 }
 
-// What `bake --radiosity` would store for a scene without it.
+// Forecast of what `bake --radiosity` would store for a scene without it.
 struct RadiosityOffer {
   bool is_open = false;   // it stores none and has light to solve for
   std::size_t bytes = 0;  // at least; 0: unknown

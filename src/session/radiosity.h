@@ -27,12 +27,12 @@ bool can_solve_radiosity(const Scene& scene);
 // Fails if the scene has no light of its own, on Ctrl-C, and in builds without the solver.
 Status solve_scene(const std::string& name, const RadiosityWork& work, Scene* scene, SolvedRadiosity* solved);
 
-// What solve_scene() would take.
+// Predicted cost of solve_scene().
 struct RadiosityCost {
   std::size_t bytes = 0;  // stored
   double seconds = 0;
 };
-// Predicts it from a sample of the work, in a tenth of its time. The scene has light of its own. Fails in builds
+// Predicts the cost from a sample of the work, in about a tenth of its time. The scene has light of its own. Fails in builds
 // without the solver.
 Status forecast_scene(std::uint32_t threads, const Scene& scene, RadiosityCost* cost);
 // Predicts the stored bytes alone, in milliseconds: a lower bound, exact unless backs of surfaces see light. 0:

@@ -17,7 +17,7 @@
 
 namespace pocketray {
 
-// Whether all of the gate is requested.
+// Returns whether all of the gate is requested.
 bool whole_gate();
 
 // How many inputs a test tries: `usual` in the suite, the requested share of `whole` in the gate but not fewer than

@@ -63,7 +63,7 @@ struct Knob {
   double (*price)(double value) = nullptr;  // rough relative frame time; null: the value hardly matters
   bool alone = false;                       // never varied together with others
   bool is_setting = true;                   // can change from frame to frame
-  // Of choices of `bake`: why the scene cannot be baked with that value, or would be the baseline; empty: it can.
+  // Tells why `bake` cannot make this choice for the scene, or would make the baseline; empty: it can.
   std::function<std::string(const BakeableScene& scene, double value)> bake_unfit;
 };
 

@@ -45,8 +45,8 @@ struct Measured {
   Interval time_ratio;  // relative to the baseline of the same round
   double instructions_per_pixel = kNotMeasured;
   double bytes_per_frame = kNotMeasured;  // of its rows from a render server; only for the baseline and near-lossless
-  // Of the baseline and of choices of `bake`: bytes of the .pray file, which a device loads as it is, and the time to
-  // bake it.
+  // Bytes of the .pray file, which a device loads as it is, and the time to bake it; known for the baseline and for
+  // choices of `bake`.
   double stored_bytes = kNotMeasured, bake_seconds = kNotMeasured;
   Distance truth, model;              // as shown on screen: after quantisation and dither
   double flip_before = kNotMeasured;  // mean against the model, before these
@@ -112,7 +112,7 @@ struct ReferenceFigures {
   double rmse = 0, flip = 0;
 };
 
-// What `bake --radiosity` would give, predicted.
+// Prediction of time, bytes and error of `bake --radiosity`.
 struct RadiosityPrediction {
   std::string why_not;                 // why it would give nothing; empty: see below
   double seconds = 0;                  // of the bake, on this machine

@@ -1,4 +1,4 @@
-// What `bake --radiosity` would give a scene that stores none: predicted, so that it need not be baked to know.
+// Predicts time, bytes and error of `bake --radiosity` for a scene that stores none, without baking it.
 #pragma once
 #include "desktop/sweep/picture_errors.h"
 #include "desktop/sweep/rigs.h"

@@ -27,8 +27,8 @@ Status plan_rigs(Rigs* rigs, SweepPlan* plan);
 // Finds or opens the rig of a configuration, with the first rig's exposure. Owned by `rigs`.
 Status rig_for(Rigs* rigs, const Configuration& configuration, Rig** rig);
 
-// Likewise for the rig whose pictures are references: cornell's sphere is finer, and where textures are varied, they
-// are the largest.
+// Finds or opens the rig that renders references, as above: its sphere in cornell is finer, and where textures are
+// varied, they are the largest.
 Status reference_rig(Rigs* rigs, Rig** rig);
 
 // Closes a rig that is no longer used, unless it is the first.

@@ -45,7 +45,7 @@ struct Rig {
   std::uint32_t part_pixels = 0;  // frames are parts of about this many pixels; 0: the whole picture
 };
 
-// What scenes can differ in, other than settings.
+// A sweep renders the scene with each of these, besides settings.
 struct SceneChoice {
   std::uint32_t sphere_columns = kCornellSphereColumns;  // of cornell's sphere
   BakeChoices bake;
