@@ -10,10 +10,13 @@ namespace {
 // Plans for the settings asked for, and for as many levels as fit beside them.
 Status plan_dial(const QualityDial& dial, Renderer* renderer, const SceneStorage& storage, const OutputNeed& output) {
   const Settings asked = renderer->settings;
-  RETURN_IF_ERROR(plan_renderer(renderer, storage, output));  // chooses the accelerator, which stays
+  RETURN_IF_ERROR(plan_renderer(renderer, storage, output));
+  const bool falls_back = renderer->accel.is_fallback;
+  const AccelInfo* const chosen = renderer->accel.info;
   for (std::uint32_t count = kQualityLevelCount; count > 0; --count) {
     renderer->settings = widest_settings(renderer->scene, asked, {dial.levels, count});
-    if (plan_renderer(renderer, storage, output).ok) return success();
+    if (plan_renderer(renderer, storage, output).ok && renderer->accel.is_fallback == falls_back) return success();
+    renderer->accel.info = chosen;
   }
   renderer->settings = asked;
   return plan_renderer(renderer, storage, output);
