@@ -98,7 +98,7 @@ class Instantiations {
   template <std::size_t... index>
   static Function pick(EffectMask wanted, std::index_sequence<index...>) {
     static constexpr Function table[] = {Part::template instance<kMasks.mask[index]>()...};
-    for (std::size_t i = 0; i < count(); ++i)
+    for (std::size_t i = 0; i < sizeof...(index); ++i)
       if (kMasks.mask[i] == wanted) return table[i];
     CHECK(false);
     return nullptr;
