@@ -18,6 +18,7 @@
 #include "session/output.h"
 #include "session/radiosity.h"
 #include "session/report.h"
+#include "session/room_light.h"
 
 namespace pocketray {
 namespace {
@@ -25,7 +26,7 @@ namespace {
 struct BakeOptions {
   std::string input, output, json, environment, animation, accel = kBvhAccel.name, textures = "exact";
   ModelOptions model;
-  bool radiosity = false, no_mip_maps = false;
+  bool radiosity = false, no_radiosity = false, no_mip_maps = false;
   std::uint32_t patch_count = 0;  // of radiosity; 0: the default
 };
 
@@ -77,6 +78,21 @@ Status keep_animation(const std::string& asked, Scene* scene) {
   return success();
 }
 
+// Solves radiosity if it is asked for, and for rooms unless it is too much.
+Status light(const BakeOptions& o, Scene* scene, SolvedRadiosity* solved, bool* too_much) {
+  const std::uint32_t threads = std::thread::hardware_concurrency();
+  if (o.no_radiosity) {
+    drop_radiosity(scene);
+    return success();
+  }
+  if (o.radiosity) return solve_scene(o.input, {threads, o.patch_count}, scene, solved);
+  if (!calls_for_radiosity(*scene)) return success();
+  RadiosityFit fit;
+  if (!fit_radiosity(threads, *scene, kBakeLimit, &fit).ok) return success();
+  *too_much = fit.patch_count == 0;
+  return *too_much ? success() : solve_scene(o.input, {threads, fit.patch_count}, scene, solved);
+}
+
 Status bake(const BakeOptions& o) {
   RETURN_IF_ERROR(check(o));
   if (o.output == "-") RETURN_IF_ERROR(keep_output_for_data());
@@ -98,8 +114,8 @@ Status bake(const BakeOptions& o) {
   RETURN_IF_ERROR(check_not_read(heap.files, {{"-o", o.output}, {"--json", o.json}}));
   if (interrupted) return failure("interrupted: nothing is written");
   SolvedRadiosity solved;
-  if (o.radiosity)
-    RETURN_IF_ERROR(solve_scene(o.input, {std::thread::hardware_concurrency(), o.patch_count}, &scene, &solved));
+  bool too_much = false;
+  RETURN_IF_ERROR(light(o, &scene, &solved, &too_much));
   double solve_ms = static_cast<double>(clock_ns() - start) * 1e-6;
   CompressedTextures compressed;
   if (o.textures == "compressed") compress_textures(&scene, &compressed);
@@ -129,9 +145,12 @@ Status bake(const BakeOptions& o) {
                 counted(scene.triangles.count, "triangle").c_str(), counted(scene.materials.count, "material").c_str(),
                 counted(scene.textures.count, "texture").c_str(), static_cast<double>(byte_count) / (1 << 20),
                 static_cast<double>(accel_bytes) / (1 << 20), read_ms, build_ms);
-  if (o.radiosity && o.json != "-")
-    std::printf("radiosity: %s, %.2f MiB, solved in %.1f s\n", solved.summary.c_str(),
-                static_cast<double>(solved.memory.size()) / (1 << 20), solve_ms * 1e-3);
+  const bool has_solved = !solved.memory.empty();
+  if (too_much) print_note("its radiosity would take more than a minute or 2 MiB: --radiosity stores it nevertheless");
+  if (has_solved && o.json != "-")
+    std::printf("radiosity: %s, %.2f MiB, solved in %.1f s%s\n", solved.summary.c_str(),
+                static_cast<double>(solved.memory.size()) / (1 << 20), solve_ms * 1e-3,
+                o.radiosity ? "" : "; --no-radiosity omits it");
   const nlohmann::json texture_rows = report_textures(compressed, o.json != "-");
   if (o.json.empty()) return success();
   return write_json(o.json, {{"output", o.output},
@@ -147,7 +166,7 @@ Status bake(const BakeOptions& o) {
                              {"read_ms", read_ms},
                              {"build_ms", build_ms},
                              {"radiosity_bytes", solved.memory.size()},
-                             {"radiosity_ms", o.radiosity ? solve_ms : 0},
+                             {"radiosity_ms", has_solved ? solve_ms : 0},
                              {"warning", heap.warning}});
 }
 
@@ -177,8 +196,13 @@ void add_bake_command(Command program, int* exit_status) {
   command.add_flag("--no-mip-maps", options->no_mip_maps, "store no smaller levels of textures")
       .details("Textures then take a quarter less memory but sparkle where they appear small.");
   add_environment_option(command, &options->environment);
-  command.add_flag("--radiosity", options->radiosity, "solve and store the light between surfaces")
-      .details("Takes seconds to minutes here and little on the device. The pose is that of time 0.");
+  command.add_flag("--radiosity", options->radiosity, "store light between surfaces, whatever it takes")
+      .details(
+          "Lit rooms get it without this, unless it would take more than a minute or 2 MiB. It costs the device "
+          "little. "
+          "The pose is that of time 0.");
+  command.add_flag("--no-radiosity", options->no_radiosity, "store no light between surfaces")
+      .excludes(command.get_option("--radiosity"), "it asks for radiosity");
   command.add_option("--patches N", options->patch_count, "with --radiosity: patches that exchange light")
       .range(kPatchCountMin, kPatchCountMax)
       .default_str("about 1200")
@@ -200,11 +224,11 @@ void add_bake_command(Command program, int* exit_status) {
       .capture_default_str()
       .details(help);
   command.everyday("Output", {"--output", "--accel"});
-  command.everyday("Light", {"--radiosity", "--environment"});
+  command.everyday("Light", {"--radiosity", "--no-radiosity", "--environment"});
   command.everyday("Model", {"--up", "--animation"});
   command.everyday("Textures", {"--texture-max", "--textures"});
   command.example("pocketray bake model.glb -o model.pray");
-  command.example("pocketray bake cornell --radiosity -o cornell.pray");
+  command.example("pocketray bake cornell -o cornell.pray");
   command.callback([=] { *exit_status = run(*options); });
 }
 

@@ -78,14 +78,6 @@ Status open_budgeted(const RenderOptions& o, const OutputBytes& bytes, RenderJob
   return success();
 }
 
-// Pictures and journals must not replace files that the scene is read from.
-Status check_pictures(const RenderJob& job, const SceneSource& source) {
-  if (source.files.empty()) return success();
-  RETURN_IF_ERROR(check_not_read(source.files, {{"--json", job.options.common.json}}));
-  for (const std::string& path : job.asked.paths) RETURN_IF_ERROR(check_not_read(source.files, {{"-o", path}}));
-  return success();
-}
-
 // Reads which frames are finished, with --resume, and begins the journal of those to come.
 Status start_journal(const SceneSource& source, const Renderer& renderer, FrameJournal* journal, RenderJob* job) {
   if (!keeps_journal(job->options, job->asked)) return success();
@@ -132,6 +124,7 @@ Status open_job(const RenderOptions& given, Opened* o) {
   options->common.threads = team_threads(options->parts.team, options->common.threads);
   RETURN_IF_ERROR(read_render_options(options, &job->asked));
   job->asked.picture.kind = job->asked.kind.c_str();
+  for (const std::string& path : job->asked.paths) options->common.outputs.push_back({"-o", path});
   const platform::Device* device = nullptr;
   RETURN_IF_ERROR(find_device(options->common, &device));
   Status status =
@@ -141,7 +134,6 @@ Status open_job(const RenderOptions& given, Opened* o) {
   auto bytes = [job](const Settings& settings) { return output_bytes(job->options, job->asked, settings); };
   RETURN_IF_ERROR(chooses_settings(options->budget) ? open_budgeted(*options, bytes, job, &o->scene, &o->budget)
                                                     : open_scene_with(job->servers, options->common, bytes, &o->scene));
-  RETURN_IF_ERROR(check_pictures(*job, o->scene.source));
   Renderer* renderer = &o->scene.renderer;
   if (moves_camera(*options)) job->camera = make_camera_control(renderer->view.camera, subject_of(o->scene));
   RETURN_IF_ERROR(start_servers_for(*options, renderer, job));

@@ -6,6 +6,8 @@
 #include "base/nearest_word.h"
 #include "plan/plan_scene.h"
 #include "platform/file.h"
+#include "session/note.h"
+#include "session/radiosity.h"
 #include "session/scene_options.h"
 #ifdef POCKETRAY_HAVE_IMPORT
 #include "session/environment_import.h"
@@ -64,6 +66,11 @@ Status set_environment_if_requested(const std::string& name, Renderer* renderer,
   if (name.empty() || name == kNoEnvironment) return success();
   CHECK(renderer != nullptr && source != nullptr && storage != nullptr);
   Scene* scene = &renderer->scene;
+  if (!scene->radiosity_info.empty() && renderer->settings.indirect == IndirectChoice::automatic) {
+    print_note("leaving out the scene's stored light between surfaces, which is of other surroundings");
+    drop_radiosity(scene);
+    source->baked = nullptr, source->baked_bytes = 0;  // it is no longer the file's scene
+  }
   EnvironmentMemory memory;
   RETURN_IF_ERROR(set_environment(name, scene, &memory));
   if (!memory.file.empty()) source->files.push_back(memory.file);

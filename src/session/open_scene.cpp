@@ -14,6 +14,7 @@
 #include "session/note.h"
 #include "session/quality_choice.h"
 #include "session/radiosity.h"
+#include "session/room_light.h"
 
 namespace pocketray {
 namespace {
@@ -96,6 +97,8 @@ Status open_scene(const CommonOptions& o, const OpenHooks& hooks, OpenScene* ope
   RETURN_IF_ERROR(set_environment_if_requested(o.environment, renderer, &opened->source, &storage));
   RETURN_IF_ERROR(check_outputs_of(o, opened->source.files));
   RETURN_IF_ERROR(solve_if_requested(o.scene, renderer, &opened->source, &storage));
+  if (settings.indirect == IndirectChoice::automatic)
+    RETURN_IF_ERROR(light_room(o.scene, renderer, &opened->source, &storage));
   RETURN_IF_ERROR(set_quality(o, opened->source, renderer));
   opened->asked = settings = renderer->settings;
   if (hooks.loaded) RETURN_IF_ERROR(hooks.loaded(opened->source, renderer));

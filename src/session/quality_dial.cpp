@@ -13,9 +13,15 @@ Status plan_dial(const QualityDial& dial, Renderer* renderer, const SceneStorage
   RETURN_IF_ERROR(plan_renderer(renderer, storage, output));
   const bool falls_back = renderer->accel.is_fallback;
   const AccelInfo* const chosen = renderer->accel.info;
+  const bool is_coherent = renderer->history.state.planned;
+  const char* const because = renderer->history.state.unplanned_because;
   for (std::uint32_t count = kQualityLevelCount; count > 0; --count) {
     renderer->settings = widest_settings(renderer->scene, asked, {dial.levels, count});
-    if (plan_renderer(renderer, storage, output).ok && renderer->accel.is_fallback == falls_back) return success();
+    if (plan_renderer(renderer, storage, output).ok && renderer->accel.is_fallback == falls_back &&
+        renderer->history.state.planned == is_coherent) {
+      renderer->history.state.unplanned_because = because;  // as for the settings that were asked for
+      return success();
+    }
     renderer->accel.info = chosen;
   }
   renderer->settings = asked;

@@ -17,16 +17,6 @@
 #endif
 
 namespace pocketray {
-namespace {
-
-template <class Visit>
-void visit_radiosity(Scene* s, const Visit& visit) {
-  visit(s->radiosity_info), visit(s->radiosity_triangles), visit(s->radiosity_grids);
-  visit(s->radiosity_nodes), visit(s->radiosity_corners), visit(s->radiosity_values), visit(s->radiosity_splits);
-  visit(s->radiosity_cuts);
-}
-
-}  // namespace
 
 #ifdef POCKETRAY_HAVE_RADIOSITY
 namespace {
@@ -127,6 +117,29 @@ Status solve_scene(const std::string& name, const RadiosityWork& work, Scene* sc
 
 bool can_solve_radiosity(const Scene& scene) { return has_light(scene) && scene.info.default_lights == 0; }
 
+Status fit_radiosity(std::uint32_t threads, const Scene& scene, const RadiosityLimit& limit, RadiosityFit* fit) {
+  CHECK(can_solve_radiosity(scene) && fit != nullptr);
+  *fit = RadiosityFit();
+  try {
+    Block block;
+    Renderer renderer;
+    RETURN_IF_ERROR(prepare(scene, &renderer, &block));
+    for (std::uint32_t patch_count : {1200u, 300u, 75u}) {
+      RadiositySize size;
+      RETURN_IF_ERROR(size_radiosity(renderer.frame, options_of({threads, patch_count}), &size));
+      const bool fits =
+          size.pair_count() <= limit.pair_count && size.patch_count <= limit.patch_count && size.bytes <= limit.bytes;
+      *fit = {fits ? patch_count : 0, size.bytes, size.pair_count()};
+      if (fits) break;
+    }
+    return success();
+  } catch (const std::bad_alloc&) {
+    return failure("not enough memory to divide its surfaces for radiosity");
+  } catch (const std::system_error&) {
+    return failure("not enough memory for %u threads", threads);
+  }
+}
+
 Status forecast_scene(std::uint32_t threads, const Scene& scene, RadiosityCost* cost) {
   CHECK(can_solve_radiosity(scene) && cost != nullptr);
   try {
@@ -135,7 +148,7 @@ Status forecast_scene(std::uint32_t threads, const Scene& scene, RadiosityCost* 
     RETURN_IF_ERROR(prepare(scene, &renderer, &block));
     RadiosityForecast forecast;
     RETURN_IF_ERROR(forecast_radiosity(renderer.frame, options_of({threads}), &forecast));
-    *cost = {forecast.bytes, forecast.seconds};
+    *cost = {forecast.size.bytes, forecast.seconds};
     return success();
   } catch (const std::bad_alloc&) {
     return failure("not enough memory to divide its surfaces for radiosity");
@@ -156,9 +169,17 @@ Status solve_scene(const std::string& name, const RadiosityWork&, Scene*, Solved
   return failure("%.300s stores no radiosity: bake it on a desktop with pocketray bake --radiosity", name.c_str());
 }
 Status forecast_scene(std::uint32_t, const Scene&, RadiosityCost*) { return failure("this build solves no radiosity"); }
+Status fit_radiosity(std::uint32_t, const Scene&, const RadiosityLimit&, RadiosityFit*) {
+  return failure("this build solves no radiosity");
+}
 std::size_t stored_radiosity_bytes(const Scene&) { return 0; }
 bool can_solve_radiosity(const Scene&) { return false; }
 #endif
+
+void drop_radiosity(Scene* scene) {
+  CHECK(scene != nullptr);
+  visit_radiosity(scene, [](auto& array) { array = {}; });
+}
 
 Status solve_if_requested(const std::string& name, Renderer* renderer, SceneSource* source, SceneStorage* storage) {
   CHECK(renderer != nullptr && source != nullptr && storage != nullptr);
@@ -170,9 +191,15 @@ Status solve_if_requested(const std::string& name, Renderer* renderer, SceneSour
 Status solve_into(const RadiosityWork& work, const std::string& name, Renderer* renderer, SceneSource* source,
                   SceneStorage* storage) {
   CHECK(renderer != nullptr && source != nullptr && storage != nullptr);
-  Scene* scene = &renderer->scene;
+  Scene lit = renderer->scene;
   SolvedRadiosity solved;
-  RETURN_IF_ERROR(solve_scene(name, work, scene, &solved));
+  RETURN_IF_ERROR(solve_scene(name, work, &lit, &solved));
+  return adopt_radiosity(name, lit, solved, renderer, source, storage);
+}
+
+Status adopt_radiosity(const std::string& name, const Scene& lit, const SolvedRadiosity& solved, Renderer* renderer,
+                       SceneSource* source, SceneStorage* storage) {
+  CHECK(renderer != nullptr && source != nullptr && storage != nullptr);
   auto* copy =
       static_cast<std::uint8_t*>(arena_try_allocate(&renderer->memory.scene, solved.memory.size() + kArenaAlignment));
   if (!copy)
@@ -180,7 +207,8 @@ Status solve_into(const RadiosityWork& work, const std::string& name, Renderer* 
                            source);
   // The arrays keep their places relative to the block.
   std::memcpy(copy, solved.memory.data(), solved.memory.size());
-  visit_radiosity(scene, [&](auto& array) {
+  renderer->scene = lit;
+  visit_radiosity(&renderer->scene, [&](auto& array) {
     if (array.empty()) return;
     auto* bytes = reinterpret_cast<const std::uint8_t*>(array.data);
     array.data = reinterpret_cast<decltype(array.data)>(copy + (bytes - solved.memory.data()));

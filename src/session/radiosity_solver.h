@@ -38,15 +38,24 @@ struct RadiositySolution {
 Status solve_radiosity(const FrameData& frame, const RadiosityOptions& options, const SolverProgress& progress,
                        RadiositySolution* solution);
 
-// Cost of a solution, known without solving.
-struct RadiosityForecast {
-  std::uint32_t patch_count = 0;
+// Size of a solution, known without solving: the same on every machine.
+struct RadiositySize {
+  std::uint32_t patch_count = 0, receiver_count = 0;
   std::size_t bytes = 0;  // stored
-  double seconds = 0;     // on this machine, with the options' threads
+  // Pairs of a patch and a patch or receiver that light passes between: almost all of the time.
+  double pair_count() const { return static_cast<double>(patch_count) * (patch_count + double(receiver_count)); }
 };
 
-// Divides the surfaces as solve_radiosity() does, which places what is stored, and times a sample of the exchange.
-// Takes a tenth of the solution's time or less, but half a second where that is short.
+// Divides the surfaces as solve_radiosity() does, which places what is stored.
+Status size_radiosity(const FrameData& frame, const RadiosityOptions& options, RadiositySize* size);
+
+struct RadiosityForecast {
+  RadiositySize size;
+  double seconds = 0;  // on this machine, with the options' threads
+};
+
+// Like size_radiosity(), and times a sample of the exchange. Takes a tenth of the solution's time or less, but half a
+// second where that is short.
 Status forecast_radiosity(const FrameData& frame, const RadiosityOptions& options, RadiosityForecast* forecast);
 
 // Bytes that a solution stores, from the geometry alone, without rays: as if no back saw light.

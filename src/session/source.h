@@ -28,6 +28,7 @@ struct SceneSource {
   std::vector<std::string> files;           // files of the model and its environment
   NamedBoxes parts;                         // named parts of a model and their bounds at time 0; names may repeat
   Box focus = empty_box();                  // bounds of the part that --focus names; empty: none
+  bool lit_unasked = false;                 // its radiosity comes from light_room()
   std::size_t bytes_wanted = 0;             // memory needed, if loading failed for lack of it; otherwise 0
 };
 

@@ -42,7 +42,9 @@ if "${run[@]}" --help | grep -q '^ *accuracy '; then
     expect accuracy_of_bakes 0 'bakes the scene 4 times, about .* s of which are for radiosity' accuracy cube "${tiny[@]}" \
       -o bakes --rounds 1 --bake-choices --json bakes.json
     check accuracy_has_bakes grep -q '^radiosity,75 patches,[0-9].*,[0-9]*,[0-9.e-]*,radiosity$' bakes/accuracy.csv
-    check accuracy_predicts_radiosity grep -q '"flip_truth_without": 0' bakes.json
+    "${run[@]}" bake cube --no-radiosity -o plain.pray >/dev/null
+    expect accuracy_of_unlit 0 'index.html' accuracy plain.pray "${tiny[@]}" -o plain --rounds 1 --json plain.json
+    check accuracy_predicts_radiosity grep -q '"flip_truth_without": 0' plain.json
     expect accuracy_of_other_bakes 1 'bake-choices.*--restart' accuracy cube "${tiny[@]}" -o bakes --rounds 1
   fi
   # Goal: instructions are counted if possible; otherwise nothing else is lost. Method: the baseline's row; if the CPU does

@@ -11,7 +11,8 @@ signalled() {  # signal words...
 
 # Goal: a command that waits for a pipe's reader ends on the first Ctrl-C, and says what it waited for. Method: pipes that
 # nobody reads, as each kind of output.
-for pair in "pipe.ppm render cube ${tiny[*]} -o" "pipe.json render cube ${tiny[*]} -o a.ppm --json" "pipe.pray bake cube -o"; do
+"${run[@]}" render cube "${tiny[@]}" -o lit.ppm >/dev/null 2>&1  # keeps its light, which takes seconds
+for pair in "pipe.ppm render cube ${tiny[*]} -o" "pipe.json render cube ${tiny[*]} -o a.ppm --json" "pipe.pray bake cube --no-radiosity -o"; do
   read -ra command <<<"$pair"
   mkfifo "${command[0]}"
   signalled INT "${command[@]:1}" "${command[0]}"
@@ -27,6 +28,7 @@ kill $reader 2>/dev/null
 wait $reader 2>/dev/null
 
 # Goal: a pipe in the place of what is kept between runs hangs no command, and costs no result. Method: of each kind.
+own_cache=$XDG_CACHE_HOME
 export XDG_CACHE_HOME=$PWD/cache
 expect prices_are_kept 0 '' render cube "${tiny[@]}" --budget-ms 5 -o a.ppm
 kept=$(ls cache/pocketray/*.front)
@@ -34,12 +36,18 @@ rm "$kept" && mkfifo "$kept"
 expect pipe_of_prices 0 'is a pipe or a device, where --front keeps what it measured: remove it' render cube "${tiny[@]}" --budget-ms 5 -o b.ppm
 check picture_in_spite_of_it test -s b.ppm
 expect pipe_of_prices_in_bench 1 'remove it' bench cube --frames 1 "${tiny[@]}" --front
+for kept in cache/pocketray/*.light; do
+  [ -e "$kept" ] || continue  # a build without the solver
+  rm "$kept" && mkfifo "$kept"
+  expect pipe_of_light 0 'the light of rooms keeps what it measured: remove it; solving' render cube "${tiny[@]}" -o c.ppm
+  rm "$kept"
+done
 if has accuracy; then
   expect samples_are_kept 0 '' accuracy cube "${tiny[@]}" --rounds 1 --reference-samples 2 -o swept
   for kept in cache/pocketray/*.pfm; do rm "$kept" && mkfifo "$kept"; done
   expect pipe_of_samples 0 'where the cache keeps what it measured: remove it' accuracy cube "${tiny[@]}" --rounds 1 --reference-samples 2 -o again
 fi
-unset XDG_CACHE_HOME
+export XDG_CACHE_HOME=$own_cache
 
 # Goal: a file that reaches the limit of sizes, and a terminal that closes, leave nothing behind. Method: a limit of one
 # block; SIGHUP in a long sequence.

@@ -3,10 +3,11 @@
 . "$(dirname "$0")/cli.sh"
 
 # Goal: each level gives the picture of its settings; medium is the default, and a setting on the command line wins, even at
-# its default. Method: pictures by level and by settings, of a scene whose ambient light the upper levels replace.
+# its default. Method: pictures by level and by settings, of a scene without radiosity, whose ambient light the upper
+# levels replace.
 small=(--size 32x24)
 picture() {  # NAME OPTION...
-  "${run[@]}" render cornell "${small[@]}" "${@:2}" -o "$1.ppm" >/dev/null 2>"$1.err" || cat "$1.err"
+  "${run[@]}" render seesaw "${small[@]}" "${@:2}" -o "$1.ppm" >/dev/null 2>"$1.err" || cat "$1.err"
 }
 picture usual
 picture medium --quality medium
@@ -23,15 +24,16 @@ check settings_change_the_level cmp -s high_of_one_sample.ppm one_sample.ppm
 check levels_ask_for_nothing_without_effect test "$(grep -c 'has no effect' high.err)" = 0
 expect quality_unknown 1 'draft, low, medium, high or best' render cornell "${small[@]}" --quality superb -o refused.png
 expect quality_beside_a_budget 2 'excludes' render cornell "${small[@]}" --quality low --budget-ms 40 -o refused.png
-expect plan_shows_the_dial 0 '^  high .*samples 1 to 4, indirect auto to instant-radiosity' plan cornell
+expect plan_shows_the_dial 0 '^  high .*samples 1 to 4, indirect auto to instant-radiosity' plan seesaw
 expect plan_says_what_measures_it 0 'quality, built in; .pocketray accuracy. measures' plan cornell
 # Goal: plan says what baked radiosity would take, unless it is stored or there is nothing to solve.
 if "${run[@]}" bake --help 2>/dev/null | grep -q -- --radiosity && "${run[@]}" --help | grep -q '^ *accuracy '; then
-  expect plan_offers_radiosity 0 'would store 0.26 MiB or more; --prices predicts its time' plan cube
-  expect plan_offers_radiosity_as_json 0 '"bytes_at_least": 267740' plan cube --json -
+  "${run[@]}" bake cube --no-radiosity -o plain.pray >/dev/null
+  expect plan_offers_radiosity 0 'would store 0.26 MiB or more; --prices predicts its time' plan plain.pray
+  expect plan_offers_radiosity_as_json 0 '"bytes_at_least": 267740' plan plain.pray --json -
   if [ $# -eq 0 ]; then  # emulated, it takes minutes
-    expect plan_predicts_radiosity 0 'would take [0-9.]+ s here and store 0.26 MiB' plan cube --prices
-    "${run[@]}" bake cube --radiosity -o lit.pray >/dev/null 2>&1
+    expect plan_predicts_radiosity 0 'would take [0-9.]+ s here and store 0.26 MiB' plan plain.pray --prices
+    "${run[@]}" bake cube -o lit.pray >/dev/null 2>&1
     "${run[@]}" plan lit.pray >lit.txt
     check plan_offers_no_second_radiosity test "$(grep -c 'radiosity: not stored' lit.txt)" = 0
   fi

@@ -16,8 +16,10 @@ if "${run[@]}" --help | grep -q '^ *serve '; then
 fi
 if [ $# -eq 0 ] && "${run[@]}" --help | grep -q '^ *serve '; then  # not under an emulated CPU
   "${run[@]}" render cornell --size 32x24 --threads 1 -o one.ppm >/dev/null
-  "${run[@]}" bake cornell -o c.pray >/dev/null
-  "${run[@]}" bake cornell --accel compact -o d.pray >/dev/null
+  limit=(--radiosity --patches 300)  # what opening cornell solves
+  "${run[@]}" help bake radiosity >/dev/null 2>&1 || limit=()
+  "${run[@]}" bake cornell "${limit[@]}" -o c.pray >/dev/null
+  "${run[@]}" bake cornell "${limit[@]}" --accel compact -o d.pray >/dev/null
   mkdir scenes && cp d.pray scenes/ && head -c 5000 c.pray >scenes/cut.pray
   "${run[@]}" serve --listen 127.0.0.1:0 --scenes scenes --threads 2 >serve.out 2>serve.err &
   server=$!
@@ -149,7 +151,7 @@ if [ $# -eq 0 ] && "${run[@]}" --help | grep -q '^ *serve '; then  # not under a
   wait $device
   check device_goes_on_without_its_server test $? -eq 0
   check device_tells_the_loss_in_one_line test "$(grep -c "$address.* continuing without it" lost.err)" = 1
-  check device_tells_nothing_else test "$(grep -vc '[0-9] %, .* left$' lost.err)" = 1
+  check device_tells_nothing_else test "$(grep -vc "$news" lost.err)" = 1
   "${run[@]}" render seesaw --size 96x72 --frames 0:24 -o kept.ppm >/dev/null
   for n in 00 04 05 12 24; do check "frame_${n}_is_complete" cmp -s kept-00$n.ppm lost-00$n.ppm; done
   expect render_without_its_server 0 'continuing without it' render seesaw "${shared[@]}" --server "$address" -o gone.ppm

@@ -11,7 +11,9 @@ echo hello >plain
 for ending in xyz blend glb; do cp plain plain.$ending; done
 "${run[@]}" bake cube -o a.pray >/dev/null
 head -c 500 a.pray >cut.pray
-"${run[@]}" render cube --size 8x6 --threads 1 -o a.ppm >/dev/null
+for scene in cornell cube; do  # keeps their light, too
+  "${run[@]}" render $scene --size 8x6 --threads 1 -o a.ppm >/dev/null 2>&1
+done
 "${run[@]}" render cube --size 4x3 --threads 1 -o small.ppm >/dev/null
 
 has() {  # WORD : the build has this command, or this option of a command

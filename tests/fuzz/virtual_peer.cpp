@@ -30,7 +30,7 @@ FuzzLink::~FuzzLink() { platform::kNullLink.close_all(link); }
 
 const SceneStore& fuzz_store() {
   static SceneStore store;
-  if (store.scenes.empty()) CHECK(store_scene("cube", "cube", std::uint64_t(1) << 30, &store).ok);
+  if (store.scenes.empty()) CHECK(store_scene("cube", "cube", false, std::uint64_t(1) << 30, &store).ok);
   return store;
 }
 

@@ -201,7 +201,7 @@ int main(int argument_count, char** arguments) {
   SceneStore store;
   const std::string name = argument_count > 1 ? arguments[1] : "cornell";
   const int samples = argument_count > 2 ? std::atoi(arguments[2]) : 1;
-  Status status = store_scene(name, name, 1u << 30, &store);
+  Status status = store_scene(name, name, false, 1u << 30, &store);
   Costs costs;
   if (status.ok) status = measure_costs(store.scenes[0], static_cast<std::uint32_t>(samples > 0 ? samples : 1), &costs);
   if (!status.ok) return report(status);

@@ -55,8 +55,8 @@ TEST_CASE("forecast_knows_the_bytes_of_a_solution") {
       REQUIRE(forecast_radiosity(test->renderer.frame, options_with(patches), &forecast).ok);
       RadiositySolution solution;
       solve_seconds(test->renderer.frame, options_with(patches), &solution);
-      CHECK(forecast.bytes == solution.bytes());
-      CHECK(forecast.patch_count == solution.patch_count);
+      CHECK(forecast.size.bytes == solution.bytes());
+      CHECK(forecast.size.patch_count == solution.patch_count);
       CHECK(forecast.seconds > 0);
       const std::size_t fronts = radiosity_bytes_of_fronts(*scene, options_with(patches));
       CHECK(fronts <= solution.bytes());

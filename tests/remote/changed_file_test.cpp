@@ -48,7 +48,7 @@ struct SceneFile {
 TEST_CASE("changed_file_leaves_a_served_scene_as_it_was") {
   SceneFile file;
   SceneStore store;
-  Status status = store_scene("cube.pray", file.path, 1u << 26, &store);
+  Status status = store_scene("cube.pray", file.path, false, 1u << 26, &store);
   REQUIRE_MESSAGE(status.ok, status.message);
   const StoredScene& stored = store.scenes[0];
   for (int round = 0; round < 2; ++round) {

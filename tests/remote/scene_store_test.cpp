@@ -11,7 +11,10 @@
 
 #include "scene/baked.h"
 #include "scene/builtin/builtin.h"
+#include "session/open_scene.h"
+#include "session/picture.h"
 #include "session/scene_identity.h"
+#include "support/cache_folder.h"
 #include "support/scripted_client.h"
 
 using namespace pocketray;
@@ -87,6 +90,31 @@ TEST_CASE("scene_store_has_the_scenes_of_a_folder") {
 #endif
   CHECK(store.warnings[0].find("damaged.pray is skipped: ") == 0);
 }
+
+#ifdef POCKETRAY_HAVE_RADIOSITY
+// Goal: a room is there as desktops and as devices open it, found by name as the former; other scenes once. Method: the
+// identity of a cube opened by a command, and of one that is loaded; a store without room for both.
+TEST_CASE("scene_store_has_rooms_lit_and_plain") {
+  light_of_rooms();
+  CommonOptions options;
+  options.scene = "cube", options.size = "8x6";
+  OpenScene opened;
+  REQUIRE(open_scene(options, {picture_bytes}, &opened).ok);
+  ContentHash lit;
+  REQUIRE(identify_scene(opened.source, &opened.renderer, &lit).ok);
+  const StoredScene* plain = named(builtin_store(), "cube");
+  SceneStore store;
+  REQUIRE(store_scene("cube", "cube", true, 1 << 30, &store).ok);
+  REQUIRE(store_scene("seesaw", "seesaw", true, 1 << 30, &store).ok);
+  REQUIRE(store.scenes.size() == 3);
+  CHECK(named(store, "cube")->hash == lit);
+  CHECK(named(store, "cube (for devices)")->hash == plain->hash);
+  SceneStore small;
+  REQUIRE(store_scene("cube", "cube", true, plain->byte_count + plain->accel_bytes + 1000, &small).ok);
+  REQUIRE(small.scenes.size() == 1);
+  CHECK(named(small, "cube")->hash == plain->hash);
+}
+#endif
 
 // Goal: scenes beyond the byte limit are skipped. Method: room for only the smallest ones.
 TEST_CASE("scene_store_keeps_to_its_limit") {

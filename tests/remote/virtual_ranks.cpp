@@ -50,7 +50,7 @@ const TeamBackend kVirtualBackend = {send, receive, [](void*, int) { std::abort(
 const SceneStore& small_store() {
   static SceneStore store;
   if (!store.scenes.empty()) return store;
-  for (const char* name : {"seesaw", "cube"}) REQUIRE(store_scene(name, name, 1u << 30, &store).ok);
+  for (const char* name : {"seesaw", "cube"}) REQUIRE(store_scene(name, name, false, 1u << 30, &store).ok);
   std::unique_ptr<BuiltScene> dim = build_builtin("seesaw");
   dim->scene.info.auto_exposure = 1;
   std::vector<std::uint8_t> bytes(baked_size(dim->scene));

@@ -11,7 +11,7 @@ using namespace pocketray;
 namespace {
 
 Settings settings_with(const CommonOptions& options) {
-  setenv("XDG_CACHE_HOME", "/nonexistent", 1);
+  setenv("XDG_CACHE_HOME", "/dev/null", 1);
   OpenScene opened;
   const Status status = open_scene(options, {picture_bytes}, &opened);
   REQUIRE_MESSAGE(status.ok, status.message);
@@ -20,7 +20,7 @@ Settings settings_with(const CommonOptions& options) {
 
 CommonOptions high() {
   CommonOptions o;
-  o.scene = "cornell", o.size = "16x12", o.quality = "high";
+  o.scene = "seesaw", o.size = "16x12", o.quality = "high";
   return o;
 }
 
@@ -41,7 +41,7 @@ TEST_CASE("quality_leaves_settings_of_the_command_line") {
   CHECK(settings_with(o).indirect == IndirectChoice::automatic);
 }
 
-// Goal: a level asks for nothing that the scene ignores. Method: cornell has neither environment nor textures.
+// Goal: a level asks for nothing that the scene ignores. Method: seesaw has no environment.
 TEST_CASE("quality_asks_for_nothing_without_effect") {
   CHECK(settings_with(high()).environment_shadows == Quality().environment_shadows);
 }

@@ -126,9 +126,9 @@ TEST_CASE("overlap_of_the_paper_s_rows") {
   const Row rows[] = {{"cornell", 989, 8841}, {"cornell", 585, 8841}, {"cornell", 325, 8841},
                       {"Buddha", 520, 6688},  {"Buddha", 390, 6688},  {"Buddha", 208, 6688}};
   SceneStore store;
-  REQUIRE(store_scene("cornell", "cornell", ~std::uint64_t(0), &store).ok);
+  REQUIRE(store_scene("cornell", "cornell", false, ~std::uint64_t(0), &store).ok);
   const std::string buddha = std::string(POCKETRAY_SHARED) + "/scenes/mesh/happy_vrip_res3.ply";
-  const bool has_buddha = store_scene("Buddha", buddha, ~std::uint64_t(0), &store).ok;
+  const bool has_buddha = store_scene("Buddha", buddha, false, ~std::uint64_t(0), &store).ok;
   if (!has_buddha) std::printf("no Buddha: %s\n", buddha.c_str());
   for (const Row& row : rows) {
     if (!has_buddha && std::string(row.scene) == "Buddha") continue;

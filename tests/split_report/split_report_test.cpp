@@ -319,9 +319,10 @@ TEST_CASE("split_report_interrupt_leaves_no_half_point") {
 // cost the same in every scene here; only their compression differs.
 TEST_CASE("split_report_table" * doctest::skip()) {
   SceneStore store;
-  for (const char* name : {"cornell", "statue"}) REQUIRE(store_scene(name, name, ~std::uint64_t(0), &store).ok);
+  for (const char* name : {"cornell", "statue"}) REQUIRE(store_scene(name, name, false, ~std::uint64_t(0), &store).ok);
   std::string buddha = std::string(POCKETRAY_SHARED) + "/scenes/mesh/happy_vrip_res3.ply";
-  if (!store_scene("Buddha", buddha, ~std::uint64_t(0), &store).ok) std::printf("no Buddha: %s\n", buddha.c_str());
+  if (!store_scene("Buddha", buddha, false, ~std::uint64_t(0), &store).ok)
+    std::printf("no Buddha: %s\n", buddha.c_str());
   std::printf(
       "| scene | device | servers | m chosen | m best | chosen / best | times as fast as alone | rows of each |\n");
   std::printf("|---|---|---|---|---|---|---|---|\n");

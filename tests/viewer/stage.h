@@ -8,6 +8,7 @@
 
 #include "platform/null/null.h"
 #include "session/open_scene.h"
+#include "support/cache_folder.h"
 #include "viewer/viewer.h"
 
 namespace pocketray {
@@ -48,7 +49,7 @@ struct Stage {
   int screen_width() const { return rotation % 180 ? kHeight : kWidth; }
   int screen_height() const { return rotation % 180 ? kWidth : kHeight; }
   void load(const char* scene, const char* coherence, OpenScene* opened) {
-    setenv("XDG_CACHE_HOME", "/dev/null", 1);  // no fronts
+    light_of_rooms();
     CommonOptions common;
     common.scene = scene, common.size = "320x60", common.threads = 1, common.coherence = coherence;
     common.memory = memory, common.quality = quality;

@@ -336,16 +336,16 @@ struct DialEnd {
 
 // Presses, at most one every half second, and what they lead to when the scene is reloaded after them.
 DialEnd after_presses(const std::vector<std::pair<platform::Button, bool>>& presses, const char* memory = "64M",
-                      bool shared = false) {
+                      bool shared = false, const char* scene = "cube") {
   Stage stage;
   stage.memory = memory;
   double seconds = 0;
   for (const auto& press : presses) stage.press(seconds += 0.5, press.first, press.second);
   stage.press(seconds + 1, platform::Button::reload);
   stage.leave(seconds + 2);
-  stage.open("cube");
+  stage.open(scene);
   OpenScene opened, reloaded;
-  stage.load("cube", "off", &opened);
+  stage.load(scene, "off", &opened);
   if (shared) stage.viewer.dial = nullptr;
   bool again;
   REQUIRE(run_viewer(&stage.viewer, &opened.renderer, &again).ok);
@@ -353,7 +353,7 @@ DialEnd after_presses(const std::vector<std::pair<platform::Button, bool>>& pres
   DialEnd end = {opened.renderer.settings, stage.viewer.note.text, opened.renderer.memory.plan.total_bytes,
                  stage.viewer.kept};
   stage.viewer.reload = false;
-  stage.show("cube", &reloaded);
+  stage.show(scene, &reloaded);
   CHECK(same_quality(reloaded.renderer.settings, end.settings));
   return end;
 }
@@ -383,8 +383,8 @@ TEST_CASE("viewer_turns_the_dial") {
   CHECK(!combined.kept.camera_moved);
   CHECK(after_presses({{finer, true}}, "64M", true).note ==
         "+ and - change the quality, but not of frames shared with servers");
-  const std::string tight = std::to_string(after_presses({}).memory - 1000);
-  const DialEnd refused = after_presses({{finer, true}, {finer, true}}, tight.c_str());
+  const std::string tight = std::to_string(after_presses({}, "64M", false, "seesaw").memory - 1000);
+  const DialEnd refused = after_presses({{finer, true}, {finer, true}}, tight.c_str(), false, "seesaw");
   CHECK(same_quality(refused.settings, medium));
   CHECK(refused.note == "quality high needs more memory than was planned: raise --memory");
 }

@@ -180,7 +180,7 @@ int serve(const ServeOptions& o, const ClusterOptions& given, const ServeCluster
   options.helpers = cluster.helpers;
   if (!cluster.helpers) options.cpu_ns = platform::thread_cpu_ns;  // it waits for them
   SceneStoreOptions store_options;
-  store_options.folder = o.scenes;
+  store_options.folder = o.scenes, store_options.lights_rooms = true;
   store_options.bytes_max = given.scene_bytes_max;
   Status status = start(o, cluster, store_options, &serving, &options);
   if (!status.ok) return report(status);

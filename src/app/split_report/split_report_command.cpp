@@ -315,7 +315,7 @@ int run(const ReportOptions& o) {
   };
   if (status.ok) status = open_scene(o.common, hooks, &opened);
   if (status.ok) status = start_scene(&opened, o.common);
-  if (status.ok) status = store_scene(o.common.scene, o.common.scene, kSceneBytesMax, &store);
+  if (status.ok) status = store_scene(o.common.scene, o.common.scene, true, kSceneBytesMax, &store);
   if (status.ok) status = make_setup(o, *device, &opened.renderer, &setup);
   if (!status.ok) return report(status);
   print_notes(opened);

@@ -31,6 +31,27 @@ double sampled_seconds(std::uint32_t count, std::uint32_t sample_count, std::uin
   return seconds_since(start) * count / samples;
 }
 
+struct Placed {
+  Places places;
+  RadiositySize size;
+};
+
+// Places what solve_radiosity() would store.
+Placed place(const RadiosityOptions& options, const PatchSolution& solved) {
+  const Scene& scene = *solved.rays.frame.scene;
+  std::vector<char> front(scene.triangles.count, 1), back(scene.triangles.count, 0);
+  for (const Patch& patch : solved.patches)
+    if (patch.is_back)
+      for (std::uint32_t t : patch.triangles) back[t] = 1;
+  RadiositySolution stored;
+  Placed placed;
+  placed.places = place_receivers(scene, solved.surfaces, options, front, back, &stored);
+  placed.size.patch_count = static_cast<std::uint32_t>(solved.patches.size());
+  placed.size.receiver_count = static_cast<std::uint32_t>(placed.places.nodes.size() + placed.places.values.size());
+  placed.size.bytes = stored.bytes() + sizeof(RadiosityInfo);
+  return placed;
+}
+
 }  // namespace
 
 std::size_t radiosity_bytes_of_fronts(const Scene& scene, const RadiosityOptions& options) {
@@ -42,20 +63,23 @@ std::size_t radiosity_bytes_of_fronts(const Scene& scene, const RadiosityOptions
   return solution.bytes() + sizeof(RadiosityInfo);
 }
 
+Status size_radiosity(const FrameData& frame, const RadiosityOptions& options, RadiositySize* size) {
+  CHECK(frame.scene != nullptr && frame.geometry.accel_info != nullptr && size != nullptr);
+  PatchSolution solved(frame);
+  RETURN_IF_ERROR(divide_surfaces(options, &solved));
+  *size = place(options, solved).size;
+  return success();
+}
+
 Status forecast_radiosity(const FrameData& frame, const RadiosityOptions& options, RadiosityForecast* forecast) {
   CHECK(frame.scene != nullptr && frame.geometry.accel_info != nullptr && forecast != nullptr);
   *forecast = RadiosityForecast();
   const auto start = std::chrono::steady_clock::now();
   PatchSolution solved(frame);
   RETURN_IF_ERROR(divide_surfaces(options, &solved));
-  const std::uint32_t patch_count = static_cast<std::uint32_t>(solved.patches.size());
-  const Scene& scene = *frame.scene;
-  std::vector<char> front(scene.triangles.count, 1), back(scene.triangles.count, 0);
-  for (const Patch& patch : solved.patches)
-    if (patch.is_back)
-      for (std::uint32_t t : patch.triangles) back[t] = 1;
-  RadiositySolution stored;
-  const Places places = place_receivers(scene, solved.surfaces, options, front, back, &stored);
+  const Placed placed = place(options, solved);
+  const Places& places = placed.places;
+  const std::uint32_t patch_count = placed.size.patch_count;
   double seconds = seconds_since(start);
   seconds += sampled_seconds(patch_count, kRowSamples, options.threads, [&](std::uint32_t i) {
     std::vector<float> row(patch_count), there(solved.rays.has_sheets ? patch_count : 0);
@@ -65,15 +89,13 @@ Status forecast_radiosity(const FrameData& frame, const RadiosityOptions& option
   const std::vector<Vec3d> dark(patch_count, Vec3d{0, 0, 0});
   const PatchLight light = {solved.patches, dark, dark};
   const std::uint32_t node_count = static_cast<std::uint32_t>(places.nodes.size());
-  const std::uint32_t receiver_count = node_count + static_cast<std::uint32_t>(places.values.size());
-  seconds += sampled_seconds(receiver_count, kReceiverSamples, options.threads, [&](std::uint32_t i) {
+  seconds += sampled_seconds(placed.size.receiver_count, kReceiverSamples, options.threads, [&](std::uint32_t i) {
     if (i < node_count)
       gather(solved.rays, light, places.nodes[i].at, places.nodes[i].material, true, i);
     else
       gather(solved.rays, light, places.values[i - node_count].at, places.values[i - node_count].material, false, i);
   });
-  forecast->patch_count = patch_count;
-  forecast->bytes = stored.bytes() + sizeof(RadiosityInfo);
+  forecast->size = placed.size;
   forecast->seconds = seconds;
   return success();
 }

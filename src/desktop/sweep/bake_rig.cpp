@@ -85,7 +85,8 @@ Status find_bakeable(const std::string& name, const OpenScene& opened, bool has_
   const Scene& scene = opened.renderer.scene;
   if (is_baked_name(name)) return success();  // `bake` reads models and built-in scenes
   bakeable->texture_side = longest_side(scene);
-  bakeable->is_lit = has_own_look && scene.radiosity_triangles.empty() && can_solve_radiosity(scene);
+  bakeable->is_lit = has_own_look && (scene.radiosity_triangles.empty() || opened.source.lit_unasked) &&
+                     can_solve_radiosity(scene);
   bakeable->is_model = find_builtin(name.c_str()) == nullptr;
   if (!bakeable->is_model) return success();
   BakeChoices choices;

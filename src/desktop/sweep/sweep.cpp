@@ -19,6 +19,7 @@
 #include "desktop/sweep/rigs.h"
 #include "effect/setting_list.h"
 #include "plan/quality_level.h"
+#include "platform/file.h"
 #include "platform/instructions.h"
 #include "session/interrupt.h"
 #include "session/note.h"
@@ -321,6 +322,10 @@ Status check_options(const AccuracyOptions& o) {
     return failure("--reference-samples is %u: it must lie in 2 … 1000000", o.reference_samples);
   if (!(o.pixels_per_degree >= 1 && o.pixels_per_degree <= 1000))
     return failure("--pixels-per-degree is %g: it must lie in 1 … 1000", o.pixels_per_degree);
+  const std::size_t slash = o.folder.rfind('/', o.folder.find_last_not_of('/'));
+  if (slash != std::string::npos && slash > 0 && platform::file_stamp(o.folder.substr(0, slash).c_str()) == 0)
+    return failure("%.300s cannot be created as a folder: make %.200s first", o.folder.c_str(),
+                   o.folder.substr(0, slash).c_str());
   return success();
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <thread>
 
 #include "base/check.h"
 #include "base/printable.h"
@@ -11,6 +12,7 @@
 #include "session/heap_scene.h"
 #include "session/output.h"
 #include "session/progress.h"
+#include "session/room_light.h"
 
 namespace pocketray {
 namespace {
@@ -45,6 +47,18 @@ Status too_many_bytes(std::uint64_t bytes_max) {
   return failure("it does not fit in the %.0f MiB for all scenes", static_cast<double>(bytes_max) / (1 << 20));
 }
 
+// Bakes a scene into memory.
+Status write_bytes(const Scene& scene, std::uint64_t bytes_left, StoredScene* stored) {
+  const std::size_t byte_count = baked_size(scene);
+  if (byte_count > bytes_left) return too_many_bytes(bytes_left);
+  std::uint8_t* bytes = take_aligned(byte_count, &stored->baked_block);
+  if (!bytes) return failure("cannot get %zu bytes of memory", byte_count);
+  baked_write(scene, bytes);
+  stored->bytes = bytes;
+  stored->byte_count = byte_count;
+  return success();
+}
+
 // Reads or creates the baked bytes.
 Status read_bytes(const std::string& path, std::uint64_t bytes_left, StoredScene* stored) {
   if (is_baked_name(path)) {
@@ -62,14 +76,7 @@ Status read_bytes(const std::string& path, std::uint64_t bytes_left, StoredScene
   }
   HeapScene heap;
   RETURN_IF_ERROR(read_heap_scene(path, ModelOptions(), &heap));
-  std::size_t byte_count = baked_size(heap.scene);
-  if (byte_count > bytes_left) return too_many_bytes(bytes_left);
-  std::uint8_t* bytes = take_aligned(byte_count, &stored->baked_block);
-  if (!bytes) return failure("cannot get %zu bytes of memory", byte_count);
-  baked_write(heap.scene, bytes);
-  stored->bytes = bytes;
-  stored->byte_count = byte_count;
-  return success();
+  return write_bytes(heap.scene, bytes_left, stored);
 }
 
 // Opens the bytes.
@@ -108,6 +115,23 @@ Status add_scene(const std::string& name, Status status, StoredScene* stored, Sc
   return status;
 }
 
+// Adds a room with its radiosity, as desktops open it, if there is memory for it besides `plain`, as devices do.
+Status store_lit(const std::string& name, const std::string& path, const StoredScene& plain, std::uint64_t bytes_left,
+                 SceneStore* store, bool* is_lit) {
+  if (!calls_for_radiosity(plain.scene)) return success();
+  Scene scene = plain.scene;
+  scene.accel = {};
+  SolvedRadiosity solved;
+  RETURN_IF_ERROR(find_room_light(path, plain.hash, std::thread::hardware_concurrency(), SIZE_MAX, &scene, &solved));
+  if (scene.radiosity_triangles.empty()) return success();
+  const std::uint64_t plain_bytes = plain.byte_count + plain.accel_bytes;
+  StoredScene lit;
+  Status status = write_bytes(scene, bytes_left - plain_bytes, &lit);
+  if (status.ok) status = open_stored(bytes_left - plain_bytes, &lit);
+  *is_lit = add_scene(name, status, &lit, store).ok;
+  return success();
+}
+
 }  // namespace
 
 std::uint64_t stored_bytes(const SceneStore& store) {
@@ -120,12 +144,15 @@ SceneStore::~SceneStore() {
   for (StoredScene& stored : scenes) release(&stored);
 }
 
-Status store_scene(const std::string& name, const std::string& path, std::uint64_t bytes_left, SceneStore* store) {
+Status store_scene(const std::string& name, const std::string& path, bool lights_rooms, std::uint64_t bytes_left,
+                   SceneStore* store) {
   CHECK(store != nullptr);
   StoredScene stored;
   Status status = read_bytes(path, bytes_left, &stored);
   if (status.ok) status = open_stored(bytes_left, &stored);
-  return add_scene(name, status, &stored, store);
+  bool is_lit = false;
+  if (status.ok && lights_rooms) status = store_lit(name, path, stored, bytes_left, store, &is_lit);
+  return add_scene(is_lit ? name + " (for devices)" : name, status, &stored, store);
 }
 
 Status store_baked_scene(const std::string& name, const std::uint8_t* bytes, std::size_t byte_count,
@@ -164,7 +191,7 @@ Status open_scene_store(const SceneStoreOptions& options, SceneStore* store) {
   std::uint64_t bytes_left = options.bytes_max;
   Progress progress = start_progress("reading scenes", sources.size());
   for (std::size_t i = 0; i < sources.size(); ++i) {
-    Status status = store_scene(sources[i].name, sources[i].path, bytes_left, store);
+    Status status = store_scene(sources[i].name, sources[i].path, options.lights_rooms, bytes_left, store);
     if (!status.ok) store->warnings.push_back(sources[i].name + " is skipped: " + status.message);
     CHECK_LE(stored_bytes(*store), options.bytes_max);
     bytes_left = options.bytes_max - stored_bytes(*store);

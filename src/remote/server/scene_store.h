@@ -33,6 +33,7 @@ struct SceneStore {
 struct SceneStoreOptions {
   std::string folder;                                // empty: only the built-in scenes
   std::uint64_t bytes_max = std::uint64_t(1) << 30;  // for all scenes with their accelerators; further ones are skipped
+  bool lights_rooms = false;                         // as for store_scene()
 };
 
 // Reads the scenes, showing progress if that takes long. Fails if the folder is unreadable or memory is short. Ignores
@@ -40,8 +41,10 @@ struct SceneStoreOptions {
 Status open_scene_store(const SceneStoreOptions& options, SceneStore* store);
 
 // Adds a scene called `name`: a built-in one, or the file at `path`; at most `bytes_left` with its accelerator. Does
-// not add a scene twice.
-Status store_scene(const std::string& name, const std::string& path, std::uint64_t bytes_left, SceneStore* store);
+// not add a scene twice. `lights_rooms`: a room is added twice, as desktops open it, with radiosity, and as devices do,
+// without.
+Status store_scene(const std::string& name, const std::string& path, bool lights_rooms, std::uint64_t bytes_left,
+                   SceneStore* store);
 
 // store_scene() for the bytes of a baked file, which are copied.
 Status store_baked_scene(const std::string& name, const std::uint8_t* bytes, std::size_t byte_count,
