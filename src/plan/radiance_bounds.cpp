@@ -22,7 +22,9 @@ namespace {
 // Upper bound of the surroundings' light that a coat of strength 1 reflects.
 float coat_glow_bound(const FrameData& frame, const Material& coat, bool lit_by_environment) {
   if (lit_by_environment) return environment_bound(*frame.scene, coat, frame.mask);
-  return has(frame.mask, Effect::ambient_gloss) ? reflected_surroundings_bound(frame.scene->info, coat) : 0;
+  return has(frame.mask, Effect::ambient_gloss)
+             ? reflected_surroundings_bound(surroundings_max(*frame.scene, frame.mask), coat)
+             : 0;
 }
 
 // Upper bounds of the radiance that surfaces of a material send out.
@@ -46,7 +48,7 @@ MaterialBound material_bound(const FrameData& frame, std::uint32_t index) {
   if (lit_by_environment)
     bound.own += environment_bound(scene, m, frame.mask);
   else if (has(frame.mask, Effect::ambient_gloss))
-    bound.own += reflected_surroundings_bound(scene.info, m);
+    bound.own += reflected_surroundings_bound(surroundings_max(scene, frame.mask), m);
   const ClearCoat* coat = has(frame.mask, Effect::clear_coat) ? coat_of(scene, index) : nullptr;
   if (coat) bound.own += coat->strength * coat_glow_bound(frame, coat_bounds(*coat), lit_by_environment);
   bound.passed = max_component(m.mirror);

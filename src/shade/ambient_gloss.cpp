@@ -3,6 +3,7 @@
 #include "base/check.h"
 #include "effect/effect_probe.h"
 #include "indirect/environment.h"
+#include "indirect/indirect_list.h"
 #include "shade/surface.h"
 
 namespace pocketray {
@@ -13,9 +14,8 @@ Vec3 even_light(const FrameData& frame, const Ray& ray, const Material& m, const
   effect_entered<Effect::ambient_gloss>();
   const Vec3 specular = reflectance_at(s, m.specular, m.specular_tinted);
   const float cosine = dot(s.normal, ray.direction);
-  if (has(frame.mask, Effect::anisotropy) && !is_zero(s.grain))
-    return reflected_surroundings(frame.scene->info, evened(m, s), specular, cosine);
-  return reflected_surroundings(frame.scene->info, m, specular, cosine);
+  const bool is_even = !has(frame.mask, Effect::anisotropy) || is_zero(s.grain);
+  return reflected_surroundings(even_surroundings(frame, s), is_even ? m : evened(m, s), specular, cosine);
 }
 
 template <bool with_diffuse>
@@ -53,6 +53,19 @@ void put_in_front(FrameData* frame) {
 }
 
 }  // namespace
+
+Vec3 even_surroundings(const FrameData& frame, const Surface& s) {
+  if (!has(frame.mask, Effect::radiosity)) return radiance_of_surroundings(frame.scene->info);
+  constexpr Vec3 kWhite = {1, 1, 1};
+  Vec3 sum = {0, 0, 0};
+  for (int i = 0; i < IndirectList::kCount; ++i) {
+    const IndirectInfo& info = IndirectList::kInfos[i];
+    if (info.effects & bit(Effect::radiosity))
+      sum = info.radiance({*frame.scene, frame.indirect.prepared[i], s.point, s.normal, kWhite, s.hit.triangle, s.hit.u,
+                           s.hit.v, s.front, frame.settings.reconstruction});
+  }
+  return sum;
+}
 
 void find_surroundings(FrameData* frame) {
   CHECK(frame != nullptr && frame->scene != nullptr);

@@ -3,6 +3,7 @@
 #include "effect/effect_probe.h"
 #include "indirect/environment.h"
 #include "indirect/surroundings.h"
+#include "shade/ambient_gloss.h"
 #include "shade/normal_map.h"
 #include "shade/texture.h"
 
@@ -58,7 +59,7 @@ void add_coat(const FrameData& frame, const Ray& ray, float open, Surface* s) {
     reflected = reflected_environment(scene, m, m.specular, coat.normal, ray.direction, irradiance);
   } else {
     effect_entered<Effect::ambient_gloss>();
-    reflected = reflected_surroundings(scene.info, m, m.specular, dot(coat.normal, ray.direction));
+    reflected = reflected_surroundings(even_surroundings(frame, *s), m, m.specular, dot(coat.normal, ray.direction));
   }
   s->glow += reflected * (coat.lobe * open);
 }

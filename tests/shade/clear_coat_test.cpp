@@ -224,9 +224,10 @@ TEST_CASE("clear_coat_reflects_the_surroundings") {
       if (with_sky) sky.give(&s.scene.scene);
       if (occluded) s.scene.material_maps.resize(1), s.scene.material_maps[0].occlusion.texture = s.texture(51, 0, 0);
       s.scene.bind();
-      const Vec3 whole = with_sky
-                             ? reflected_environment(s.scene.scene, lobe, lobe.specular, n, way, {0.5f, 0.6f, 0.7f})
-                             : reflected_surroundings(s.scene.scene.info, lobe, lobe.specular, dot(n, way));
+      const Vec3 whole =
+          with_sky
+              ? reflected_environment(s.scene.scene, lobe, lobe.specular, n, way, {0.5f, 0.6f, 0.7f})
+              : reflected_surroundings(radiance_of_surroundings(s.scene.scene.info), lobe, lobe.specular, dot(n, way));
       CAPTURE(occluded);
       CAPTURE(with_sky);
       check_near(seen(&s.scene, eye), to_double(whole) * (0.5 * (occluded ? 0.2 : 1)));

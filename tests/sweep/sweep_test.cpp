@@ -13,7 +13,10 @@
 #include "desktop/accuracy/display.h"
 #include "desktop/sweep/references.h"
 #include "platform/file.h"
+#include "scene/baked.h"
+#include "session/heap_scene.h"
 #include "session/interrupt.h"
+#include "session/output.h"
 #include "sweep/folder.h"
 
 using namespace pocketray;
@@ -25,9 +28,24 @@ Status run_sweep(const AccuracyOptions& options, Sweep* sweep, bool* whole, cons
   return measure_sweep(options, sweep, whole);
 }
 
+// A file of `cube` that stores no radiosity: only these are not solved for when they are opened.
+const std::string& plain_cube() {
+  static const Folder folder;
+  static const std::string path = [] {
+    HeapScene heap;
+    REQUIRE(read_heap_scene("cube", ModelOptions(), &heap).ok);
+    std::string bytes(baked_size(heap.scene), 0);
+    baked_write(heap.scene, reinterpret_cast<std::uint8_t*>(&bytes[0]));
+    const std::string made = folder.file("cube.pray");
+    REQUIRE(write_file(made, bytes).ok);
+    return made;
+  }();
+  return path;
+}
+
 AccuracyOptions small(const Folder& folder) {
   AccuracyOptions o;
-  o.common.scene = "cube";
+  o.common.scene = plain_cube();
   o.common.size = "32x24";
   o.common.threads = 2;
   o.common.memory = "16M";

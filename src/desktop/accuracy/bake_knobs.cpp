@@ -51,7 +51,7 @@ std::vector<Knob> bake_knobs() {
   radiosity.name = "radiosity", radiosity.what = "patches between which `bake --radiosity` solves light";
   radiosity.effect = kRadiosityEffect;
   radiosity.values = {0, 75, 300, 1200, 2400};
-  radiosity.labels = {"none", "75 patches", "300 patches", "1200 patches", "2400 patches"};
+  radiosity.labels = {"as opened", "75 patches", "300 patches", "1200 patches", "2400 patches"};
   radiosity.get = [](const Configuration& c) { return static_cast<double>(c.bake.patch_count); };
   radiosity.set = [](Configuration* c, double v) { c->bake.patch_count = static_cast<std::uint32_t>(v); };
   radiosity.bake_unfit = [](const BakeableScene& scene, double) -> std::string {

@@ -244,18 +244,19 @@ ReferenceRay leave(const FrameData& frame, const ReferenceSurface& s, const Vec3
 
 Vec3d reflected_surroundings(const FrameData& frame, const ReferenceSurface& s, const Vec3d& to_viewer) {
   if (environment_lights(*frame.scene, frame.mask, frame.settings.indirect)) return {0, 0, 0};
-  if (!has(frame.mask, Effect::ambient_gloss)) return {0, 0, 0};
+  if (!has(frame.mask, Effect::ambient_gloss) || has(frame.mask, Effect::radiosity)) return {0, 0, 0};
+  const Vec3 radiance = radiance_of_surroundings(frame.scene->info);
   Vec3d by_coat = {0, 0, 0};
   if (s.coat_lobe > 0) {
     const float cosine = static_cast<float>(dot(s.coat_normal, to_viewer));
-    const Vec3 light = reflected_surroundings(frame.scene->info, s.coat, s.coat.specular, cosine);
+    const Vec3 light = reflected_surroundings(radiance, s.coat, s.coat.specular, cosine);
     by_coat = to_double(light) * (s.coat_lobe * s.open);
   }
   if (!reflects_surroundings(lobes_of(s))) return by_coat;
   const Vec3 specular = to_float(s.specular);
   const float cosine = static_cast<float>(dot(s.normal, to_viewer));
   const Material m = is_zero(s.grain) ? lobes_of(s) : evened(lobes_of(s), {to_float(s.normal), to_float(s.grain)});
-  return by_coat + s.open * s.passes * to_double(reflected_surroundings(frame.scene->info, m, specular, cosine));
+  return by_coat + s.open * s.passes * to_double(reflected_surroundings(radiance, m, specular, cosine));
 }
 
 Vec3d coat_value(const ReferenceSurface& s, const Vec3d& to_viewer, const Vec3d& to_light) {

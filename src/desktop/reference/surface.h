@@ -48,8 +48,8 @@ Vec3d coat_value(const ReferenceSurface& s, const Vec3d& to_viewer, const Vec3d&
 // Approximate upper bound of what the lobes reflect; 0: there are none.
 double lobe_weight(const ReferenceSurface& s, const Vec3d& to_viewer);
 
-// Radiance of the surroundings reflected by the glossy lobe, if the frame's plan has Effect::ambient_gloss and no
-// environment replaces it.
+// Radiance of the surroundings reflected by the glossy lobe, if the frame's plan has Effect::ambient_gloss and neither
+// an environment nor radiosity, which its paths carry, replaces it.
 Vec3d reflected_surroundings(const FrameData& frame, const ReferenceSurface& s, const Vec3d& to_viewer);
 
 // Value of the diffuse plus the glossy lobe under the coat, plus the coat's lobe, 1/sr.

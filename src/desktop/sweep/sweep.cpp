@@ -360,7 +360,10 @@ Status measure_sweep(const AccuracyOptions& options, Sweep* sweep, bool* whole, 
   *whole = true;
   RETURN_IF_ERROR(check_options(options));
   bool counts = platform::start_instruction_count();  // including later threads
-  RETURN_IF_ERROR(plan_rigs(&run.rigs, &run.plan));
+  const Status planned = plan_rigs(&run.rigs, &run.plan);
+  *whole = planned.ok || !interrupted;  // while it solved radiosity
+  if (!*whole) return success();
+  RETURN_IF_ERROR(planned);
   const Rig& rig = *first_rig(run.rigs);
   print_notes(rig.opened);
   describe(run, rig, sweep);

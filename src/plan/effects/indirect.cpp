@@ -41,7 +41,8 @@ EffectDecision decide_ambient_gloss(const EffectCall& c) {
   if (c.settings.indirect == IndirectChoice::none) return decided(false, "no indirect light requested");
   if (shows_environment(c))
     return decided(false, "%s instead", kEffectList[static_cast<int>(Effect::environment)].name);
-  if (is_zero(radiance_of_surroundings(c.scene.info))) return decided(false, "no ambient light or background");
+  const bool is_stored = c.indirect && (c.indirect->effects & bit(Effect::radiosity));
+  if (!is_stored && is_zero(radiance_of_surroundings(c.scene.info))) return decided(false, "no ambient light or background");
   return by_materials(c, c.census.reflecting, "reflect the surroundings");
 }
 
