@@ -273,6 +273,16 @@ struct DefaultView {
 };
 constexpr std::uint32_t kDefaultViewSides = 4;
 
+// Where the camera of a scene without one stands (plan/framing.h, plan/interior.h).
+constexpr std::uint32_t kReachSides = 4, kReachAngles = 16;
+struct Framing {
+  Vec3 eye = {0, 0, 0}, target = {0, 0, 0};  // in a room that has a place to stand; otherwise equal
+  Vec3 backward = {0, 0, 0};                 // unit vector from the scene to the camera, along the view axis; or zero
+  // How far vertices reach from the middle of the bounds in all poses of an animation: to the right, left, top and
+  // bottom as the camera sees them, at angles from 0 to 90° towards it.
+  float reach[kReachSides][kReachAngles] = {};
+};
+
 // Contents that no picture of a scene shows (invisible.h).
 enum class Invisible : std::uint32_t {
   black_emission,      // materials whose emission texture is black
@@ -354,6 +364,8 @@ struct Scene {
   Array<const std::uint8_t> node_visible;        // one per node, or empty: all are, except as channels say
   Array<const SceneOrigin> origin;               // one, or none: 0
   Array<const Reduction> reductions;             // one per kind, or none
+  // One for each animation, or one; or none: measured at the start if needed, at time 0.
+  Array<const Framing> framings;
 };
 
 inline bool is_animated(const Scene& scene) {

@@ -13,6 +13,7 @@
 #include "session/environment.h"
 #ifdef POCKETRAY_HAVE_IMPORT
 #include "session/environment_import.h"
+#include "session/measured_view.h"
 #endif
 
 namespace pocketray {
@@ -77,15 +78,8 @@ namespace {
 struct FurnishedModel {
   std::shared_ptr<void> model;
   EnvironmentMemory studio;
+  MeasuredView view;
 };
-
-Status add_studio(ImportedScene* imported) {
-  auto storage = std::make_shared<FurnishedModel>();
-  storage->model = imported->storage;
-  RETURN_IF_ERROR(set_environment(kStudio, &imported->scene, &storage->studio));
-  imported->storage = storage;
-  return success();
-}
 
 }  // namespace
 
@@ -101,7 +95,12 @@ Status import_model(const std::string& name, const ImportOptions& options, Impor
   bool lit = lights_itself(imported->scene);
   imported->scene.info.default_lights = lit ? 0 : 1;
   imported->scene.info.auto_exposure = lit ? 1.0f : 0.0f;
-  if (!lit && with_studio && calls_for_studio(imported->scene)) return add_studio(imported);
+  auto storage = std::make_shared<FurnishedModel>();
+  storage->model = imported->storage;
+  if (!lit && with_studio && calls_for_studio(imported->scene))
+    RETURN_IF_ERROR(set_environment(kStudio, &imported->scene, &storage->studio));
+  if (needs_view(imported->scene)) measure_view(&imported->scene, &storage->view);
+  imported->storage = storage;
   return success();
 }
 #endif

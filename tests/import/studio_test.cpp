@@ -91,7 +91,7 @@ TEST_CASE("studio_leaves_models_as_bright_as_default_lights_do") {
   auto model = triangle_of("Kd 1 1 1");
   const Box bounds = scene_bounds(model.scene);
   const DefaultView view = find_default_view(model.scene, bounds);
-  const Camera camera = default_camera(view, bounds, 4.0f / 3);
+  const Camera camera = default_camera(view, find_framing(model.scene, view, bounds), bounds, 4.0f / 3);
   Light lights[kDefaultLightCount];
   default_lights(view, bounds, camera, lights);
   auto by_lights = [&](const Vec3d& normal) {
