@@ -119,7 +119,10 @@ Status bake(const BakeOptions& o) {
   give_block_back(accel_block);
   RETURN_IF_ERROR(status);
   if (!heap.warning.empty()) print_note(heap.warning);
-  if (has_studio) print_note("the model has no light: baking a studio with it; --environment none omits it");
+  if (heap.has_fill)
+    print_note("the model has lights but no surroundings: baking a dimmed studio with it; --environment none omits it");
+  else if (has_studio)
+    print_note("the model has no light: baking a studio with it; --environment none omits it");
   if (o.json != "-")
     std::printf("%s: %s, %s, %s, %.2f MiB (accelerator %.2f MiB), read in %.0f ms, built in %.0f ms\n",
                 o.output == "-" ? "standard output" : shown(o.output).c_str(),

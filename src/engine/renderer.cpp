@@ -316,8 +316,13 @@ bool probe_exposure(Renderer* renderer, ExposureProbe* p, std::uint32_t pixel_co
     std::uint32_t row = kStep / 2 + p->next / columns * kStep, column = kStep / 2 + p->next % columns * kStep;
     Span one = {static_cast<std::uint16_t>(row), static_cast<std::uint16_t>(column),
                 static_cast<std::uint16_t>(column + 1)};
+    const Vec3& pixel = renderer->image[static_cast<std::size_t>(row) * renderer->settings.width + column];
+    if (renderer->scene.info.auto_exposure > 1) {
+      trace_spans(&tracer, &one, 1, Aov::depth, renderer->image.data);
+      if (!(pixel.x > 0)) continue;
+    }
     trace_spans(&tracer, &one, 1, Aov::none, renderer->image.data);
-    float bright = luminance(renderer->image[static_cast<std::size_t>(row) * renderer->settings.width + column]);
+    float bright = luminance(pixel);
     if (bright > 0 && std::isfinite(bright)) p->log_sum += det_log(bright), ++p->lit;
   }
   *pixel_count = p->next - begin;

@@ -260,7 +260,7 @@ struct SceneInfo {
   std::uint32_t default_lights =
       0;  // 1: the scene asks for the default lights (plan/plan_scene.h), or already has them
   std::uint32_t default_camera = 0;  // 1: framed by its bounds
-  float auto_exposure = 0;           // 1: measure exposure before the first frame
+  float auto_exposure = 0;           // 1: measure exposure before the first frame; 2: of surfaces alone
 };
 
 // View of a scene without a camera, and lighting of one without lights (plan/plan_scene.h). Measuring it takes several

@@ -51,7 +51,7 @@ Status validate_info(const SceneInfo& info) {
       {"ambient.z", info.ambient.z, 0, kRadianceMax},
       {"exposure", info.exposure, kExposureMin, kExposureMax},
       {"frames_per_second", info.frames_per_second, kFrameRateMin, kFrameRateMax},
-      {"auto_exposure", info.auto_exposure, 0, 1},
+      {"auto_exposure", info.auto_exposure, 0, 2},
   };
   return check_fields("info", 0, fields);
 }
