@@ -116,7 +116,7 @@ Framing measure_framing(const Scene& scene, const DefaultView& view, const Box& 
 }
 
 Framing find_framing(const Scene& scene, const DefaultView& view, const Box& bounds, std::uint32_t animation) {
-  if (scene.framings.count) return scene.framings[animation < scene.framings.count ? animation : 0];
+  if (scene.framings.count) return scene.framings[std::min(animation, scene.framings.count - 1)];
   return measure_framing(scene, view, bounds);
 }
 

@@ -13,7 +13,8 @@ Camera inside_camera(const Box& bounds, double vertical_fov = kInsideFieldOfView
 
 // Returns the scene's stored view, or measures it by a few looks at every triangle. `bounds`: scene_bounds().
 DefaultView find_default_view(const Scene& scene, const Box& bounds);
-// Returns the scene's stored framing of an animation, or measures it at time 0. `view`: find_default_view().
+// Returns the scene's stored framing of an animation (kNone: at rest), or measures it at time 0. `view`:
+// find_default_view().
 Framing find_framing(const Scene& scene, const DefaultView& view, const Box& bounds, std::uint32_t animation = 0);
 // Measures where to stand in a room, or how far a scene reaches that is seen from outside.
 Framing measure_framing(const Scene& scene, const DefaultView& view, const Box& bounds);

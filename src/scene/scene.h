@@ -364,7 +364,7 @@ struct Scene {
   Array<const std::uint8_t> node_visible;        // one per node, or empty: all are, except as channels say
   Array<const SceneOrigin> origin;               // one, or none: 0
   Array<const Reduction> reductions;             // one per kind, or none
-  // One for each animation, or one; or none: measured at the start if needed, at time 0.
+  // One for each animation and one at time 0; or one; or none: measured at the start if needed.
   Array<const Framing> framings;
 };
 

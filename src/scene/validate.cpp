@@ -175,9 +175,9 @@ Status validate_default_view(const Scene& scene) {
 }
 
 Status validate_framings(const Scene& scene) {
-  if (scene.framings.count > 1 && scene.framings.count != scene.animations.count)
-    return failure("%u framings for %u animations: there must be one for each, or one, or none", scene.framings.count,
-                   scene.animations.count);
+  if (scene.framings.count > 1 && scene.framings.count != scene.animations.count + 1)
+    return failure("%u framings for %u animations: there must be one for each and one more, or one, or none",
+                   scene.framings.count, scene.animations.count);
   for (std::uint32_t i = 0; i < scene.framings.count; ++i) {
     const Framing& framing = scene.framings[i];
     if (!is_coordinate(framing.eye) || !is_coordinate(framing.target))

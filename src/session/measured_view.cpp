@@ -21,23 +21,24 @@ std::uint32_t pose_count(const Scene& scene) {
   return static_cast<std::uint32_t>(std::clamp<std::uint64_t>(count, kPosesMin, kPosesMax));
 }
 
-// Extends a framing to all poses of each animation.
+// Puts framings of all poses of each animation before the one at time 0.
 void extend_to_poses(const Scene& scene, const Box& bounds, std::vector<Framing>* framings) {
   std::vector<std::uint8_t> memory(pose_need(scene) + kArenaAlignment);
   Arena arena = make_arena("pose", memory.data(), memory.size());
   Pose pose = make_pose(scene, &arena);
   if (pose.positions.empty()) return;
-  const Vec3 backward = framings->at(0).backward;
+  const Framing at_rest = framings->at(0);
   const std::uint32_t count = pose_count(scene);
   framings->clear();
   for (std::uint32_t animation = 0; animation < scene.animations.count; ++animation) {
-    ReachMeter meter(center(bounds), backward);
+    ReachMeter meter(center(bounds), at_rest.backward);
     for (std::uint32_t i = 0; i < count; ++i) {
       pose_at(scene, animation, static_cast<double>(scene.animations[animation].duration) * i / count, &pose);
       add_reach(scene, {pose.positions.data, pose.positions.count}, &meter);
     }
     framings->push_back(meter.framing());
   }
+  framings->push_back(at_rest);
 }
 
 }  // namespace

@@ -8,7 +8,7 @@ namespace pocketray {
 
 struct MeasuredView {
   DefaultView view;
-  std::vector<Framing> framings;  // one for each animation, or one
+  std::vector<Framing> framings;  // as Scene has them
 };
 
 // Returns whether the scene has no camera or no light, so that its view is worth measuring.

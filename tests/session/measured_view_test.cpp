@@ -6,6 +6,7 @@
 #include <sys/stat.h>
 
 #include <algorithm>
+#include <cstring>
 #include <string>
 
 #include "accel/triangle.h"
@@ -81,6 +82,11 @@ TEST_CASE("measured_view_holds_every_pose") {
   MeasuredView moving_view, still_view;
   measure_view(&s->scene, &moving_view), measure_view(&still, &still_view);
   CHECK(s->scene.framings.data == moving_view.framings.data());
+  REQUIRE(s->scene.framings.count == 2);
+  REQUIRE(still.framings.count == 1);
+  const Box bounds = scene_bounds(s->scene);
+  const Framing at_rest = find_framing(s->scene, moving_view.view, bounds, kNone);
+  CHECK(std::memcmp(&at_rest, &still.framings[0], sizeof at_rest) == 0);
   for (float aspect : {0.75f, 4.0f / 3}) {
     const PictureBounds seen = seen_while_playing(s->scene, aspect, 0, 20);
     CHECK(seen.inside(0.97f));
