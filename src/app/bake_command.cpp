@@ -6,7 +6,6 @@
 
 #include "app/commands.h"
 #include "app/options.h"
-#include "plan/plan_scene.h"
 #include "platform/file.h"
 #include "scene/baked.h"
 #include "session/animation_choice.h"
@@ -14,6 +13,7 @@
 #include "session/environment.h"
 #include "session/heap_scene.h"
 #include "session/interrupt.h"
+#include "session/measured_view.h"
 #include "session/note.h"
 #include "session/output.h"
 #include "session/radiosity.h"
@@ -127,18 +127,18 @@ Status bake(const BakeOptions& o) {
     give_block_back(accel_block);
     return failure("interrupted: nothing is written");
   }
-  DefaultView default_view;
-  if (scene.cameras.empty() || !has_light(scene) || scene.info.default_lights != 0) {
-    default_view = find_default_view(scene, scene_bounds(scene));
-    scene.default_view = {&default_view, 1};
-  }
+  MeasuredView view;
+  if (needs_view(scene) && (scene.framings.empty() || !o.animation.empty())) measure_view(&scene, &view);
   std::size_t byte_count = 0;
   Status status = write_scene(o.output, scene, &byte_count);
   std::size_t accel_bytes = scene.accel.bytes();
   give_block_back(accel_block);
   RETURN_IF_ERROR(status);
   if (!heap.warning.empty()) print_note(heap.warning);
-  if (has_studio) print_note("the model has no light: baking a studio with it; --environment none omits it");
+  if (heap.has_fill)
+    print_note("the model has lights but no surroundings: baking a dimmed studio with it; --environment none omits it");
+  else if (has_studio)
+    print_note("the model has no light: baking a studio with it; --environment none omits it");
   if (o.json != "-")
     std::printf("%s: %s, %s, %s, %.2f MiB (accelerator %.2f MiB), read in %.0f ms, built in %.0f ms\n",
                 o.output == "-" ? "standard output" : shown(o.output).c_str(),

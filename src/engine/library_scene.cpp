@@ -5,7 +5,6 @@
 #include "base/limit_list.h"
 #include "engine/frame.h"
 #include "engine/library.h"
-#include "plan/plan_scene.h"
 #include "scene/validate_checks.h"
 
 namespace pocketray {
@@ -135,9 +134,10 @@ pocketray_result pocketray_use_scene_camera(pocketray_instance* instance, std::u
   if (camera_index > 0 && camera_index >= cameras.count)
     return refuse(POCKETRAY_ERROR_ARGUMENT,
                   failure("there is no camera %u: the scene has %u, counted from 0", camera_index, cameras.count));
-  float aspect = static_cast<float>(renderer->settings.width) / static_cast<float>(renderer->settings.height);
-  renderer->view.camera =
-      cameras.empty() ? default_camera(renderer->view.by_default, renderer->bounds, aspect) : cameras[camera_index];
+  if (cameras.empty())
+    frame_by_default(renderer);
+  else
+    renderer->view.camera = cameras[camera_index];
   renderer->view.camera_index = camera_index;
   renderer->view.camera_overridden = false;
   instance->refining = false;

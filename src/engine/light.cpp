@@ -151,6 +151,9 @@ Status aim_camera(Renderer* renderer) {
     if (renderer->view.look.vertical_fov > 0)
       renderer->view.camera.vertical_fov = static_cast<float>(renderer->view.look.vertical_fov);
   }
+  if (!renderer->view.camera_overridden && renderer->view.animation != renderer->view.framed_animation &&
+      renderer->scene.cameras.empty() && renderer->scene.framings.count > 1)
+    frame_by_default(renderer);
   RETURN_IF_ERROR(make_camera_rays(renderer->view.camera, renderer->settings.width, renderer->settings.height,
                                    &renderer->frame.view.camera));
   if (has(renderer->effects.mask, Effect::mip_map))

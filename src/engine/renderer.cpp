@@ -25,11 +25,19 @@
 #include "shade/source_selection.h"
 
 namespace pocketray {
+
+void frame_by_default(Renderer* renderer) {
+  RendererView& view = renderer->view;
+  const float aspect = static_cast<float>(renderer->settings.width) / static_cast<float>(renderer->settings.height);
+  view.framing = find_framing(renderer->scene, view.by_default, renderer->bounds, view.animation);
+  view.framed_animation = view.animation;
+  view.camera = default_camera(view.by_default, view.framing, renderer->bounds, aspect, view.look.vertical_fov);
+}
+
 namespace {
 
 void add_what_is_missing(Renderer* renderer) {
   Scene& scene = renderer->scene;
-  float aspect = static_cast<float>(renderer->settings.width) / static_cast<float>(renderer->settings.height);
   if (renderer->view.look.has_background || renderer->view.look.environment == EnvironmentChoice::none)
     leave_out_environment(&scene);
   renderer->bounds = scene_bounds(scene);
@@ -38,8 +46,7 @@ void add_what_is_missing(Renderer* renderer) {
     renderer->view.by_default = find_default_view(scene, renderer->bounds);
   if (scene.cameras.empty()) {
     scene.info.default_camera = 1;
-    renderer->view.camera =
-        default_camera(renderer->view.by_default, renderer->bounds, aspect, renderer->view.look.vertical_fov);
+    frame_by_default(renderer);
   } else {
     renderer->view.camera =
         scene.cameras[renderer->view.camera_index < scene.cameras.count ? renderer->view.camera_index : 0];
@@ -309,8 +316,13 @@ bool probe_exposure(Renderer* renderer, ExposureProbe* p, std::uint32_t pixel_co
     std::uint32_t row = kStep / 2 + p->next / columns * kStep, column = kStep / 2 + p->next % columns * kStep;
     Span one = {static_cast<std::uint16_t>(row), static_cast<std::uint16_t>(column),
                 static_cast<std::uint16_t>(column + 1)};
+    const Vec3& pixel = renderer->image[static_cast<std::size_t>(row) * renderer->settings.width + column];
+    if (renderer->scene.info.auto_exposure > 1) {
+      trace_spans(&tracer, &one, 1, Aov::depth, renderer->image.data);
+      if (!(pixel.x > 0)) continue;
+    }
     trace_spans(&tracer, &one, 1, Aov::none, renderer->image.data);
-    float bright = luminance(renderer->image[static_cast<std::size_t>(row) * renderer->settings.width + column]);
+    float bright = luminance(pixel);
     if (bright > 0 && std::isfinite(bright)) p->log_sum += det_log(bright), ++p->lit;
   }
   *pixel_count = p->next - begin;

@@ -69,7 +69,9 @@ struct RendererView {
   std::uint32_t animation = 0;  // the one that plays; kNone: the rest pose
   float exposure = 1;
   DefaultView by_default;  // for scenes without cameras or lights
-  Look look;               // set before plan_renderer()
+  Framing framing;         // for scenes without cameras: of that animation
+  std::uint32_t framed_animation = 0;
+  Look look;  // set before plan_renderer()
 };
 
 // The threads' working memory; empty parts are not planned.
@@ -125,6 +127,9 @@ Status change_settings(Renderer* renderer, const Settings& settings);
 
 // Sets the camera for the next frames.
 Status set_camera(Renderer* renderer, const Camera& camera);
+
+// Aims the camera of a scene without one at the animation that plays.
+void frame_by_default(Renderer* renderer);
 
 // Sums the counters of the last frame over all threads.
 Tracer total_counts(const Renderer& renderer);

@@ -1,6 +1,6 @@
 // Defaults for scenes without a camera or lights.
 #pragma once
-#include "base/fmath.h"
+#include "plan/framing.h"
 #include "scene/scene.h"
 
 namespace pocketray {
@@ -8,20 +8,24 @@ namespace pocketray {
 // Bounds of all triangles.
 Box scene_bounds(const Scene& scene);
 
-// A camera that frames the whole box from the unit direction `backward`. Fields of view are vertical, in radians.
-// Chosen: those of 33 and 21 mm lenses on 35 mm film. Wider ones distort objects, narrower ones show less of a room.
-constexpr double kFramingFieldOfView = radians(40), kInsideFieldOfView = radians(60);
-Camera framing_camera(const Box& bounds, float aspect, const Vec3& backward, double vertical_fov = kFramingFieldOfView);
 // A camera inside the box that looks across it.
 Camera inside_camera(const Box& bounds, double vertical_fov = kInsideFieldOfView);
 
 // Returns the scene's stored view, or measures it by a few looks at every triangle. `bounds`: scene_bounds().
 DefaultView find_default_view(const Scene& scene, const Box& bounds);
+// Returns the scene's stored framing of an animation (kNone: at rest), or measures it at time 0. `view`:
+// find_default_view().
+Framing find_framing(const Scene& scene, const DefaultView& view, const Box& bounds, std::uint32_t animation = 0);
+// Measures where to stand in a room, or how far a scene reaches that is seen from outside.
+Framing measure_framing(const Scene& scene, const DefaultView& view, const Box& bounds);
+// Adds the scene's triangles in some pose.
+void add_reach(const Scene& scene, Array<const Vec3> positions, ReachMeter* meter);
 
 // The camera of a scene without one: inside a closed room, in front of an open one, otherwise framing the scene from
 // slightly above and to the right of the front, or of another side if open surfaces show their backs to the front.
 // `vertical_fov`: 0 chooses it.
-Camera default_camera(const DefaultView& view, const Box& bounds, float aspect, double vertical_fov = 0);
+Camera default_camera(const DefaultView& view, const Framing& framing, const Box& bounds, float aspect,
+                      double vertical_fov = 0);
 // Returns whether a model lights itself: it has a light, a surface that emits more than display white, or dimmer lamps
 // that light other surfaces. (A glow that falls on none, such as a display's, is not enough to see a model by.)
 bool lights_itself(const Scene& scene);

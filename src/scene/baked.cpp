@@ -27,7 +27,7 @@ static_assert(sizeof(SkinWeight) == 8 + 16 && sizeof(MovingMesh) == 8 * 4 + 48, 
 static_assert(sizeof(RadiosityInfo) == 12 && sizeof(RadiosityGrid) == 3 * 12 + 3 * 4, "no padding");
 static_assert(sizeof(AnimationLabel) == 64 + 188 + 4 && sizeof(SceneOrigin) == 3 * 8 && sizeof(Reduction) == 8,
               "no padding");
-static_assert(sizeof(DefaultView) == 2 * 4 + 12 + 4, "no padding");
+static_assert(sizeof(DefaultView) == 2 * 4 + 12 + 4 && sizeof(Framing) == 3 * 12 + 64 * 4, "no padding");
 static_assert(sizeof(EnvironmentInfo) == 3 * 4 + 10 * 12, "no padding");
 static_assert(sizeof(RadiosityNode) == 4 * 12 && sizeof(RadiosityCorners) == 12 && sizeof(RadiositySplit) == 8 &&
                   sizeof(RadiosityCut) == 2 * 12 + 2 * 4,
@@ -103,8 +103,9 @@ void for_each_array(SceneType& scene, Visit visit) {
   visit("origin", scene.origin);
   visit("radiosity_cuts", scene.radiosity_cuts);
   visit("reductions", scene.reductions);
+  visit("framings", scene.framings);
 }
-constexpr std::uint32_t kArrayCount = 45;
+constexpr std::uint32_t kArrayCount = 46;
 constexpr std::uint32_t kSectionCount = 1 + kArrayCount;  // kind 0 is SceneInfo
 
 constexpr std::uint64_t aligned(std::uint64_t offset) {
@@ -123,6 +124,7 @@ constexpr std::uint32_t section_count_of(std::uint32_t version) {
          : version < 13 ? 41
          : version < 14 ? 44
          : version < 15 ? 45
+         : version < 18 ? 46
                         : kSectionCount;
 }
 

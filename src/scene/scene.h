@@ -260,7 +260,7 @@ struct SceneInfo {
   std::uint32_t default_lights =
       0;  // 1: the scene asks for the default lights (plan/plan_scene.h), or already has them
   std::uint32_t default_camera = 0;  // 1: framed by its bounds
-  float auto_exposure = 0;           // 1: measure exposure before the first frame
+  float auto_exposure = 0;           // 1: measure exposure before the first frame; 2: of surfaces alone
 };
 
 // View of a scene without a camera, and lighting of one without lights (plan/plan_scene.h). Measuring it takes several
@@ -272,6 +272,16 @@ struct DefaultView {
   float inside_share = 1;     // how far from the middle to the camera one is inside: the part without walls
 };
 constexpr std::uint32_t kDefaultViewSides = 4;
+
+// Where the camera of a scene without one stands (plan/framing.h, plan/interior.h).
+constexpr std::uint32_t kReachSides = 4, kReachAngles = 16;
+struct Framing {
+  Vec3 eye = {0, 0, 0}, target = {0, 0, 0};  // in a room that has a place to stand; otherwise equal
+  Vec3 backward = {0, 0, 0};                 // unit vector from the scene to the camera, along the view axis; or zero
+  // How far vertices reach from the middle of the bounds in all poses of an animation: to the right, left, top and
+  // bottom as the camera sees them, at angles from 0 to 90° towards it.
+  float reach[kReachSides][kReachAngles] = {};
+};
 
 // Contents that no picture of a scene shows (invisible.h).
 enum class Invisible : std::uint32_t {
@@ -354,6 +364,8 @@ struct Scene {
   Array<const std::uint8_t> node_visible;        // one per node, or empty: all are, except as channels say
   Array<const SceneOrigin> origin;               // one, or none: 0
   Array<const Reduction> reductions;             // one per kind, or none
+  // One for each animation and one at time 0; or one; or none: measured at the start if needed.
+  Array<const Framing> framings;
 };
 
 inline bool is_animated(const Scene& scene) {

@@ -51,7 +51,7 @@ Status validate_info(const SceneInfo& info) {
       {"ambient.z", info.ambient.z, 0, kRadianceMax},
       {"exposure", info.exposure, kExposureMin, kExposureMax},
       {"frames_per_second", info.frames_per_second, kFrameRateMin, kFrameRateMax},
-      {"auto_exposure", info.auto_exposure, 0, 1},
+      {"auto_exposure", info.auto_exposure, 0, 2},
   };
   return check_fields("info", 0, fields);
 }
@@ -174,6 +174,24 @@ Status validate_default_view(const Scene& scene) {
   return check_fields("default_view", 0, fields);
 }
 
+Status validate_framings(const Scene& scene) {
+  if (scene.framings.count > 1 && scene.framings.count != scene.animations.count + 1)
+    return failure("%u framings for %u animations: there must be one for each and one more, or one, or none",
+                   scene.framings.count, scene.animations.count);
+  for (std::uint32_t i = 0; i < scene.framings.count; ++i) {
+    const Framing& framing = scene.framings[i];
+    if (!is_coordinate(framing.eye) || !is_coordinate(framing.target))
+      return failure("framings[%u] stands or looks too far away", i);
+    if (!is_unit(framing.backward) && !is_zero(framing.backward))
+      return failure("framings[%u].backward is neither of length 1 nor zero", i);
+    for (const auto& side : framing.reach)
+      for (float reach : side)
+        if (!magnitude_at_most(reach, 4 * kCoordinateMax))
+          return failure("framings[%u].reach is not a number or too large", i);
+  }
+  return success();
+}
+
 }  // namespace
 
 Status check_normals(const char* array, Array<const Vec3> normals) {
@@ -243,6 +261,7 @@ Status validate_scene(const Scene& scene) {
   RETURN_IF_ERROR(validate_clear_coats(scene));
   RETURN_IF_ERROR(validate_lights_and_cameras(scene));
   RETURN_IF_ERROR(validate_default_view(scene));
+  RETURN_IF_ERROR(validate_framings(scene));
   RETURN_IF_ERROR(validate_origin(scene));
   RETURN_IF_ERROR(validate_reductions(scene));
   RETURN_IF_ERROR(validate_nodes(scene));

@@ -5,7 +5,7 @@
 #include <numeric>
 
 #include "base/check.h"
-#include "plan/plan_scene.h"
+#include "plan/framing.h"
 
 namespace pocketray {
 namespace {

@@ -26,6 +26,7 @@ Status read_heap_scene(const std::string& name, const ModelOptions& options, Hea
   result->scene = result->imported.scene;
   result->warning = result->imported.warning;
   result->files = result->imported.files;
+  result->has_fill = result->imported.has_fill;
   return success();
 #else
   (void)options;

@@ -12,6 +12,7 @@ struct HeapScene {
   Scene scene;
   std::string warning;               // of the importer, one line; empty: none
   std::vector<std::uint8_t> memory;  // of a built-in scene
+  bool has_fill = false;             // see ImportedScene
   std::vector<std::string> files;    // that the model was read from
 #ifdef POCKETRAY_HAVE_IMPORT
   ImportedScene imported;

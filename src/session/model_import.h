@@ -37,6 +37,7 @@ struct ImportedScene {
   std::string warning;                      // one line listing ignored contents; empty if none
   std::vector<std::string> material_names;  // of the first materials; empty where the file has none
   std::vector<std::string> files;           // every file read for it: its own, buffers, textures, …
+  bool has_fill = false;                    // import_model() added a studio to the lights that it has
   NamedBoxes parts;                         // named nodes, objects or groups, each with its descendants
 };
 

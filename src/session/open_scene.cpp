@@ -1,5 +1,6 @@
 #include "session/open_scene.h"
 
+#include <algorithm>
 #include <cstdio>
 
 #include "base/check.h"
@@ -132,8 +133,9 @@ Status start_scene(OpenScene* opened, const CommonOptions& o) {
   ExposureChoice choice;
   float factor;
   RETURN_IF_ERROR(parse_exposure(o.exposure, &choice, &factor));
+  float* measured = &renderer->scene.info.auto_exposure;
   if (choice != ExposureChoice::as_scene)
-    renderer->scene.info.auto_exposure = choice == ExposureChoice::measured ? 1.0f : 0.0f;
+    *measured = choice == ExposureChoice::measured ? std::max(*measured, 1.0f) : 0.0f;
   RETURN_IF_ERROR(build_renderer(renderer));
   return change_exposure(factor, &renderer->view.exposure);
 }
@@ -157,6 +159,10 @@ void print_notes(const OpenScene& opened, const char* aov) {
     std::fprintf(stderr, "pocketray: the scene has no camera: framing its bounds\n");
   else if (info.default_lights != 0)
     std::fprintf(stderr, "pocketray: the scene has no light: %s\n", added);
+  if (opened.source.has_fill && opened.renderer.scene.environment_info.count)
+    std::fprintf(stderr,
+                 "pocketray: the model has lights but no surroundings: adding a dimmed studio; "
+                 "--environment none or --background omits it\n");
   if (info.default_lights == 0 && light != LightChoice::key)
     std::fprintf(stderr, "pocketray: --light changes nothing: the scene or its environment has light\n");
   const Renderer& renderer = opened.renderer;

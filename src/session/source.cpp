@@ -13,6 +13,8 @@
 #include "session/environment.h"
 #ifdef POCKETRAY_HAVE_IMPORT
 #include "session/environment_import.h"
+#include "session/measured_view.h"
+#include "session/studio_fill.h"
 #endif
 
 namespace pocketray {
@@ -55,6 +57,7 @@ Status load_imported(const std::string& name, Renderer* renderer, SceneSource* s
   source->warning = imported.warning;
   source->material_names = imported.material_names;
   source->parts = imported.parts;
+  source->has_fill = imported.has_fill;
   source->files = imported.files;
   // Copies from the heap into the block, in the form that a device would map.
   std::size_t size = baked_size(imported.scene);
@@ -77,15 +80,8 @@ namespace {
 struct FurnishedModel {
   std::shared_ptr<void> model;
   EnvironmentMemory studio;
+  MeasuredView view;
 };
-
-Status add_studio(ImportedScene* imported) {
-  auto storage = std::make_shared<FurnishedModel>();
-  storage->model = imported->storage;
-  RETURN_IF_ERROR(set_environment(kStudio, &imported->scene, &storage->studio));
-  imported->storage = storage;
-  return success();
-}
 
 }  // namespace
 
@@ -101,7 +97,19 @@ Status import_model(const std::string& name, const ImportOptions& options, Impor
   bool lit = lights_itself(imported->scene);
   imported->scene.info.default_lights = lit ? 0 : 1;
   imported->scene.info.auto_exposure = lit ? 1.0f : 0.0f;
-  if (!lit && with_studio && calls_for_studio(imported->scene)) return add_studio(imported);
+  auto storage = std::make_shared<FurnishedModel>();
+  storage->model = imported->storage;
+  if (!lit && with_studio && calls_for_studio(imported->scene))
+    RETURN_IF_ERROR(set_environment(kStudio, &imported->scene, &storage->studio));
+  if (lit && with_studio && calls_for_fill(imported->scene)) {
+    const double radiance = typical_radiance(imported->scene);
+    RETURN_IF_ERROR(set_environment(kStudio, &imported->scene, &storage->studio));
+    dim_to_fill(radiance, storage->studio.info.data(), &imported->scene.info.background);
+    imported->has_fill = true;
+    imported->scene.info.auto_exposure = 2;  // a wide backdrop would call for more than the lights' share
+  }
+  if (needs_view(imported->scene)) measure_view(&imported->scene, &storage->view);
+  imported->storage = storage;
   return success();
 }
 #endif

@@ -27,6 +27,7 @@ struct SceneSource {
   std::vector<std::string> material_names;  // of the scene's materials, as far as the file has them
   std::vector<std::string> files;           // files of the model and its environment
   NamedBoxes parts;                         // named parts of a model and their bounds at time 0; names may repeat
+  bool has_fill = false;                    // a dimmed studio came with the model's own lights
   Box focus = empty_box();                  // bounds of the part that --focus names; empty: none
   bool lit_unasked = false;                 // its radiosity comes from light_room()
   std::size_t bytes_wanted = 0;             // memory needed, if loading failed for lack of it; otherwise 0
@@ -40,7 +41,8 @@ void give_block_back(void* block);
 void apply(const ReadingChoice& choice, ImportOptions* options);
 
 // Imports a model and decides its light. A model with lights gets its exposure measured, since files' units vary beyond
-// a display's range; others get the default lights and, with `with_studio`, a studio if they call for it.
+// a display's range; others get the default lights and, with `with_studio`, a studio if they call for it, or to fill
+// their own lights' shadows (session/studio_fill.h).
 Status import_model(const std::string& name, const ImportOptions& options, ImportedScene* imported,
                     bool with_studio = true);
 #endif

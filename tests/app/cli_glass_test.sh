@@ -13,7 +13,7 @@ secondary() {  # JSON : rays by mirrors and glass
 }
 
 # Goal: at the default depth, the picture is the same to the eye as without the cut-off, with few rays.
-for model in TransmissionTest:300000 AttenuationTest:60000; do
+for model in TransmissionTest:300000 AttenuationTest:66000; do
   name=${model%:*} most=${model#*:}
   "${run[@]}" render "$scenes/$name.glb" --depth 8 --threads 2 -o $name.ppm --json $name.json >/dev/null 2>&1
   "${run[@]}" render "$scenes/$name.glb" --depth 8 --threads 2 --cut-off 0 -o exact.ppm --json exact.json >/dev/null 2>&1

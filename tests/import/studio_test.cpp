@@ -7,6 +7,7 @@
 #include "base/rng.h"
 #include "brdf/brdf_list.h"
 #include "desktop/import/environment.h"
+#include "import/gltf_writer.h"
 #include "import/import_testing.h"
 #include "indirect/environment.h"
 #include "plan/plan_scene.h"
@@ -91,7 +92,7 @@ TEST_CASE("studio_leaves_models_as_bright_as_default_lights_do") {
   auto model = triangle_of("Kd 1 1 1");
   const Box bounds = scene_bounds(model.scene);
   const DefaultView view = find_default_view(model.scene, bounds);
-  const Camera camera = default_camera(view, bounds, 4.0f / 3);
+  const Camera camera = default_camera(view, find_framing(model.scene, view, bounds), bounds, 4.0f / 3);
   Light lights[kDefaultLightCount];
   default_lights(view, bounds, camera, lights);
   auto by_lights = [&](const Vec3d& normal) {
@@ -162,4 +163,28 @@ TEST_CASE("studio_counts_what_textures_reach") {
   CHECK(calls_for_studio(model.scene));
   maps.roughness_low = 0.9f, maps.metallic_high = 0.5f;
   CHECK(calls_for_studio(model.scene));
+}
+
+// Goal: a model with a light, in the open, gets a dimmed studio and its exposure measured of surfaces; not if it is to
+// do without. Method: a triangle under a directional light, in glTF.
+TEST_CASE("studio_fills_the_shadows_of_a_models_own_light") {
+  const TemporaryFolder folder;
+  const std::string path = folder.write(
+      "a.gltf",
+      triangle_gltf("",
+                    ",\"extensions\":{\"KHR_lights_punctual\":{\"lights\":[{\"type\":\"directional\",\"intensity\":"
+                    "400}]}}",
+                    ",\"extensions\":{\"KHR_lights_punctual\":{\"light\":0}}"));
+  ImportedScene filled, alone;
+  REQUIRE(import_model(path, ImportOptions(), &filled).ok);
+  REQUIRE(import_model(path, ImportOptions(), &alone, false).ok);
+  CHECK(filled.has_fill);
+  CHECK(has_studio(filled));
+  CHECK(filled.scene.info.auto_exposure == 2);
+  CHECK(filled.scene.info.default_lights == 0);
+  CHECK(filled.scene.lights.count == 1);
+  CHECK(filled.scene.environment_info[0].scale > 1);
+  CHECK_FALSE(alone.has_fill);
+  CHECK_FALSE(has_studio(alone));
+  CHECK(alone.scene.info.auto_exposure == 1);
 }

@@ -229,6 +229,18 @@ TEST_CASE("validate_scene_refuses_bad_default_views") {
   accepts([](FullScene* f) { f->default_view.clear(); });
 }
 
+TEST_CASE("validate_scene_refuses_bad_framings") {
+  refuses("2 framings for ", [](FullScene* f) { f->framings.push_back({}); });
+  refuses("framings[0].backward", [](FullScene* f) { f->framings[0].backward.z = 0.7f; });
+  for (float bad : {kNan, kInf, 1e19f}) {
+    refuses("framings[0] stands", [=](FullScene* f) { f->framings[0].eye.y = bad; });
+    refuses("framings[0] stands", [=](FullScene* f) { f->framings[0].target.z = bad; });
+    refuses("framings[0].reach", [=](FullScene* f) { f->framings[0].reach[3][15] = bad; });
+  }
+  accepts([](FullScene* f) { f->framings[0].reach[2][0] = -3e18f; });
+  accepts([](FullScene* f) { f->framings.clear(); });
+}
+
 // Goal: a clear coat out of range, with an invalid texture, over an unlit material or with normals of the second
 // coordinates is refused.
 TEST_CASE("validate_scene_refuses_bad_clear_coats") {

@@ -40,6 +40,7 @@ struct FullScene {
   std::vector<pocketray::Grain> grains;
   std::vector<pocketray::ClearCoat> clear_coats;
   std::vector<pocketray::DefaultView> default_view;
+  std::vector<pocketray::Framing> framings;
   std::vector<pocketray::AnimationLabel> animation_labels;
   std::vector<std::uint8_t> node_visible;
   std::vector<pocketray::SceneOrigin> origin;

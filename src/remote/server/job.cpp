@@ -149,7 +149,7 @@ Status plan(Session* session, const JobTools& tools, WireError* code) {
   // Its measurement was abandoned for another request: restart it.
   session->renderer.view.camera = session->own_camera;
   session->renderer.view.camera_overridden = false;
-  session->renderer.view.animation = 0;
+  session->renderer.view.animation = session->renderer.view.framed_animation = 0;
   session->renderer.view.exposure = session->renderer.scene.info.exposure;
   return begin_frame(&session->renderer, {0});
 }
@@ -161,7 +161,7 @@ Status aim(Session* session) {
   FrameJob* job = &session->job;
   Renderer* renderer = &session->renderer;
   renderer->view.animation = job->request.animation;
-  renderer->view.camera = session->own_camera;
+  renderer->view.camera = session->own_camera, renderer->view.framed_animation = 0;
   renderer->view.camera_overridden = false;
   if (job->request.camera_stated) RETURN_IF_ERROR(set_camera(renderer, job->request.camera));
   job->stage = JobStage::rows;
