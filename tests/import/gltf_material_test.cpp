@@ -321,9 +321,9 @@ TEST_CASE("gltf_anisotropy_becomes_a_grain") {
 // Goal: a required extension that only changes looks is named, not refused; others are (hostile_test.cpp).
 TEST_CASE("gltf_required_looks_are_a_warning") {
   const ImportedScene imported = load_text(triangle_gltf("{}",
-                                                         ",\"extensionsUsed\":[\"KHR_materials_sheen\"],"
-                                                         "\"extensionsRequired\":[\"KHR_materials_sheen\"]"));
-  CHECK(imported.warning.find("KHR_materials_sheen") != std::string::npos);
+                                                         ",\"extensionsUsed\":[\"KHR_materials_iridescence\"],"
+                                                         "\"extensionsRequired\":[\"KHR_materials_iridescence\"]"));
+  CHECK(imported.warning.find("KHR_materials_iridescence") != std::string::npos);
 }
 
 // Goal: a texture whose image only an extension knows is left out and named, wherever a material uses it. Method: such

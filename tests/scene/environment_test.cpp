@@ -90,7 +90,7 @@ TEST_CASE("baked_open_reads_files_of_earlier_versions") {
   const struct {
     std::uint32_t version;
     std::size_t sections;
-  } cases[] = {{7, 33}, {8, 35}, {9, 37}, {10, 38}, {11, 40}, {12, 41}, {13, 44}, {14, 45}};
+  } cases[] = {{7, 33}, {8, 35}, {9, 37}, {10, 38}, {11, 40}, {12, 41}, {13, 44}, {14, 45}, {16, 46}};
   for (const auto& c : cases) {
     CAPTURE(c.version);
     FullScene full;
@@ -102,10 +102,11 @@ TEST_CASE("baked_open_reads_files_of_earlier_versions") {
     if (c.version < 12) full.default_view.clear();
     if (c.version < 13) full.animation_labels.clear(), full.node_visible.clear(), full.origin.clear();
     if (c.version < 14) full.radiosity_cuts.clear(), full.radiosity_triangles[3] = kRadiosityGridBit;
-    full.reductions.clear(), full.bind();
+    if (c.version < 15) full.reductions.clear();
+    full.sheens.clear(), full.bind();
     const BakedFile now = bake(full.scene);
     auto data_begin = [](std::size_t sections) { return (kTableAt + sections * kSectionBytes + 63) / 64 * 64; };
-    const std::size_t begin = data_begin(c.sections), shift = data_begin(46) - begin;
+    const std::size_t begin = data_begin(c.sections), shift = data_begin(47) - begin;
     BakedFile before(now.size() - shift);
     std::memset(before.data(), 0, begin);
     std::memcpy(before.data(), now.data(), kTableAt + c.sections * kSectionBytes);
@@ -127,7 +128,7 @@ TEST_CASE("baked_open_reads_files_of_earlier_versions") {
     CHECK((opened.second_uvs.empty() == (c.version < 10) && opened.clear_coats.empty() == (c.version < 11)));
     CHECK((opened.radiosity_splits.empty() == (c.version < 11) && opened.default_view.empty() == (c.version < 12)));
     CHECK((opened.origin.empty() == (c.version < 13) && opened.radiosity_cuts.empty() == (c.version < 14)));
-    put_u32(before, kSectionCountAt, 46);
+    put_u32(before, kSectionCountAt, 47);
     fix_checksum(before);
     CHECK_FALSE(baked_open(before.data(), before.size(), &opened).ok);
   }
