@@ -160,6 +160,8 @@ static std::uint32_t read_material(GltfFile* file, int index, const tinygltf::Ma
                          has_map(maps) || has_strength(grain) || is_textured(coat) || is_textured(sheen);
   if (index >= 0 && needs_uvs) file->uv_sets[static_cast<std::size_t>(index)] = file->current_uv_sets;
   const std::uint32_t added = add_material(file->builder, material, source.name);
+  if (!is_zero(material.transmission) && !gltf_extension(source.extensions, "KHR_materials_volume"))
+    file->builder->glass.push_back(added);
   if (has_map(maps)) {
     out.material_maps.resize(added);
     out.material_maps.push_back(maps);

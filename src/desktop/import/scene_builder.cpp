@@ -6,6 +6,7 @@
 #include "base/check.h"
 #include "base/limits.h"
 #include "desktop/import/broken_faces.h"
+#include "desktop/import/glass.h"
 #include "desktop/import/import_error.h"
 #include "desktop/import/origin.h"
 #include "desktop/import/reduce.h"
@@ -287,6 +288,7 @@ void finish_scene(SceneBuilder* builder, const std::string& name, ImportedScene*
                 why.empty() ? "" : ")");
   }
   if (out.materials.empty()) out.materials.emplace_back();
+  decide_glass(builder);
   std::size_t count = out.positions.size();
   if (!out.normals.empty()) out.normals.resize(count, Vec3{0, 0, 0});
   bool textured =

@@ -79,6 +79,7 @@ struct SceneBuilder {
   ImportOptions options;
   std::shared_ptr<SceneArrays> out = std::make_shared<SceneArrays>();
   std::vector<std::string> material_names;  // of the first materials
+  std::vector<std::uint32_t> glass;         // materials that transmit, of which the file has no volume
   std::vector<PartSource> parts;
   std::uint64_t bytes_charged = 0;
   FilesRead files;
