@@ -76,6 +76,11 @@ TEST_CASE("glass_is_solid_if_its_mesh_is_closed") {
   CHECK_FALSE(is_thin(imported, 0));
   CHECK(imported.warning == "glass without a volume: 1 closed, taken as solid (--glass thin or solid)");
   CHECK_FALSE(is_thin(load_meshes({cube(1, true)}), 0));
+  for (float step : {1e-7f, 1e-2f}) {  // a seam that is rounded differently, and a gap
+    Soup rounded = cube();
+    for (std::size_t i = 0; i < 18; i += 3) rounded.positions[i] *= 1 + step;
+    CHECK(is_thin(load_meshes({rounded}), 0) == (step > 1e-3f));
+  }
   imported = load_meshes({cube(1, false, true)});
   CHECK(is_thin(imported, 0));
   CHECK(imported.warning ==

@@ -42,19 +42,34 @@ bool is_before(const Vec3& a, const Vec3& b) {
   return false;
 }
 
+// A grid that positions are rounded to. Some programs round the ends of a seam differently. Chosen: 2⁻²⁰ of the mesh,
+// some units in the last place; on either of two grids, half a step apart, such positions are the same.
+struct Grid {
+  Vec3 origin = {0, 0, 0};
+  float scale = 0;  // 0: positions as they are
+  float offset = 0;
+};
+constexpr float kGridSteps = 0x1p20f;
+
+Vec3 on_grid(const Grid& grid, const Vec3& p) {
+  if (!(grid.scale > 0)) return p;
+  const Vec3 steps = (p - grid.origin) * grid.scale;
+  return {std::floor(steps.x + grid.offset), std::floor(steps.y + grid.offset), std::floor(steps.z + grid.offset)};
+}
+
 // Numbers the corners of triangles by position: files repeat vertices at seams of normals and texture coordinates.
-Indices corners_by_position(const SceneArrays& out, const Indices& triangles) {
+Indices corners_by_position(const SceneArrays& out, const Indices& triangles, const Grid& grid) {
   Indices order(3 * triangles.size());
   std::iota(order.begin(), order.end(), 0);
-  auto position = [&](std::uint32_t corner) {
-    return out.positions[out.triangles[triangles[corner / 3]].vertex(corner % 3)];
-  };
+  std::vector<Vec3> position(order.size());
+  for (std::uint32_t corner : order)
+    position[corner] = on_grid(grid, out.positions[out.triangles[triangles[corner / 3]].vertex(corner % 3)]);
   std::sort(order.begin(), order.end(),
-            [&](std::uint32_t a, std::uint32_t b) { return is_before(position(a), position(b)); });
+            [&](std::uint32_t a, std::uint32_t b) { return is_before(position[a], position[b]); });
   Indices number(order.size());
   std::uint32_t last = 0;
   for (std::size_t i = 0; i < order.size(); ++i) {
-    if (i > 0 && is_before(position(order[i - 1]), position(order[i]))) ++last;
+    if (i > 0 && is_before(position[order[i - 1]], position[order[i]])) ++last;
     number[order[i]] = last;
   }
   return number;
@@ -79,9 +94,10 @@ std::vector<Edge> edges_of(const Indices& corners) {
   return edges;
 }
 
-void find_closed(const SceneArrays& out, GlassMesh* mesh) {
+// Marks the triangles of pieces that are closed on the grid.
+void mark_closed(const SceneArrays& out, const Grid& grid, GlassMesh* mesh) {
   const std::size_t count = mesh->triangles.size();
-  const std::vector<Edge> edges = edges_of(corners_by_position(out, mesh->triangles));
+  const std::vector<Edge> edges = edges_of(corners_by_position(out, mesh->triangles, grid));
   Pieces pieces(count);
   std::vector<bool> open(count);  // by piece
   for (std::size_t begin = 0, end; begin < edges.size(); begin = end) {
@@ -103,10 +119,9 @@ void find_closed(const SceneArrays& out, GlassMesh* mesh) {
     const double six_fold = dot(p[0], cross(p[1], p[2]));
     volume[piece] += six_fold, absolute[piece] += std::fabs(six_fold);
   }
-  mesh->closed.resize(count);
   for (std::uint32_t i = 0; i < count; ++i) {
     const std::uint32_t piece = pieces.find(i);
-    mesh->closed[i] = !open[piece] && std::fabs(volume[piece]) > kVolumeMin * absolute[piece];
+    if (!open[piece] && std::fabs(volume[piece]) > kVolumeMin * absolute[piece]) mesh->closed[i] = true;
   }
 }
 
@@ -143,6 +158,16 @@ Box bounds_of(const SceneArrays& out, const GlassMesh& mesh) {
     for (std::uint32_t v : out.triangles[t].vertices()) box = merge(box, out.positions[v]);
   return box;
 }
+
+void find_closed(const SceneArrays& out, GlassMesh* mesh) {
+  mesh->closed.assign(mesh->triangles.size(), false);
+  mark_closed(out, Grid(), mesh);
+  const Box box = bounds_of(out, *mesh);
+  const float side = max_component(box.high - box.low);
+  if (!(side > 0)) return;
+  for (float offset : {0.0f, 0.5f}) mark_closed(out, {box.low, kGridSteps / side, offset}, mesh);
+}
+
 bool is_inside(const Box& box, const Vec3& p) {
   for (int axis = 0; axis < 3; ++axis)
     if (!(p[axis] > box.low[axis] && p[axis] < box.high[axis])) return false;

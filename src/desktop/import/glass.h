@@ -6,8 +6,9 @@
 namespace pocketray {
 
 // Decides for each material in builder->glass, by options.glass. `automatic`: closed meshes are bodies. A mesh is
-// closed if every edge, by the positions of its ends, is passed as often in one direction as in the other; a flat one
-// is none, nor is one that has a light or an opaque object inside. Materials of both kinds are divided. Adds a remark.
+// closed if every edge, by the positions of its ends but for rounding, is passed as often in one direction as in the
+// other; a flat one is none, nor is one that has a light or an opaque object inside. Materials of both kinds are
+// divided. Adds a remark.
 void decide_glass(SceneBuilder* builder);
 
 }  // namespace pocketray
