@@ -179,6 +179,10 @@ void add_reading_options(Command command, ReadingChoice* choice) {
       .one_of({"y", "z"})
       .default_str("by format")
       .details("In PLY, STL, OBJ and OFF, which do not tell: z in PLY and STL, y in the others.");
+  command.add_option("--glass KIND", choice->glass, "glass for which a glTF file has no volume")
+      .one_of({"auto", "thin", "solid"})
+      .default_str("auto")
+      .details("auto: solid where its mesh is closed and holds no light or opaque object, otherwise a thin sheet.");
   command.add_flag("--strict", choice->strict,
                    "refuse vertices that are not finite; otherwise their faces are left out");
   command

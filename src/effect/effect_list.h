@@ -76,6 +76,7 @@ constexpr EffectRow kEffectList[kEffectCount] = {
     {Effect::anisotropy, "anisotropy", "a glossy material with a grain, such as brushed metal"},
     {Effect::second_uv, "second-uv", "a material whose textures use two sets of texture coordinates"},
     {Effect::clear_coat, "clear-coat", "a material under a clear coat"},
+    {Effect::sheen, "sheen", "a material with a sheen, such as cloth"},
 };
 
 // Returns the effects with the value in the column.

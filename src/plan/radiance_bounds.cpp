@@ -10,6 +10,7 @@
 #include "base/limits.h"
 #include "brdf/clear_coat.h"
 #include "brdf/linear_lobe.h"
+#include "brdf/sheen.h"
 #include "indirect/environment.h"
 #include "scene/metallic_roughness.h"
 #include "shade/dielectric.h"
@@ -39,7 +40,10 @@ MaterialBound material_bound(const FrameData& frame, std::uint32_t index) {
   CHECK_LT(index, scene.materials.count);
   const bool lit_by_environment = environment_lights(scene, frame.mask, frame.settings.indirect);
   const bool mapped = has(frame.mask, Effect::metallic_roughness) && scene.material_maps.count;
-  const Material m = mapped ? lobe_bounds(scene.materials[index], scene.material_maps[index]) : scene.materials[index];
+  Material m = mapped ? lobe_bounds(scene.materials[index], scene.material_maps[index]) : scene.materials[index];
+  const float diffuse = max_component(m.diffuse);
+  const Sheen* sheen = has(frame.mask, Effect::sheen) ? sheen_of(scene, index) : nullptr;
+  if (sheen) m.diffuse += sheen->color;  // for light from everywhere
   const bool shines = m.unlit && has(frame.mask, Effect::emission);
   MaterialBound bound;
   bound.own = max_component(m.emission) + (shines ? max_component(m.diffuse) : indirect_bound(scene, m, frame.mask));
@@ -54,13 +58,14 @@ MaterialBound material_bound(const FrameData& frame, std::uint32_t index) {
   bound.passed = max_component(m.mirror);
   if (!is_zero(m.transmission)) bound.passed += max_component(max(m.transmission, Vec3{1, 1, 1}));
   if (coat) bound.passed += coat->strength * coat_mirror_share(coat->roughness_low);
-  float f = max_component(m.diffuse) / kPiF;
+  float f = diffuse / kPiF;
   CHECK_LT(m.brdf, kBrdfCount);
   const BrdfInfo* lobe = kBrdfList[m.brdf];
   if (has(frame.mask, Effect::anisotropy) && has_grain(scene, index)) lobe = lobe->with_grain;
   const float linear = frame.lights.polygons.count && lobe->linear ? kLinearPeakMax : 1;
   if (!is_zero(m.specular)) f = f * lobe->diffuse_max + max_component(lobe->peak(m)) * linear;
   if (coat && has_lobe(*coat)) f += coat->strength * max_component(kBrdfList[kGgx]->peak(coat_bounds(*coat)));
+  if (sheen) f += max_component(sheen->color) * sheen_peak(sheen->roughness_low);
   bound.scattered = f;
   return bound;
 }

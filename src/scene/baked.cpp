@@ -19,7 +19,8 @@ static_assert(sizeof(Vec3) == 12 && sizeof(Vec2) == 8 && sizeof(Rgba16) == 8 && 
 static_assert(sizeof(Texture) == 4 + 2 * 2 + 4 + 4, "no padding");
 static_assert(sizeof(TextureUse) == 28 && sizeof(Material) == 8 * 12 + 6 * 4 + 2 * 28 + 4 + 4, "no padding");
 static_assert(sizeof(MetallicRoughness) == 28 && sizeof(MaterialMaps) == 28 + 5 * 28 + 8 * 4, "no padding");
-static_assert(sizeof(Grain) == 8 + 28 && sizeof(PackedTangent) == 4, "no padding");
+static_assert(sizeof(Grain) == 8 + 28 && sizeof(Sheen) == 12 + 2 * 4 + 2 * 28 && sizeof(PackedTangent) == 4,
+              "no padding");
 static_assert(sizeof(Light) == 4 + 3 * 12 + 3 * 4 + 4 && sizeof(Camera) == 3 * 12 + 4 * 4, "no padding");
 static_assert(sizeof(Node) == 4 + 12 + 16 + 12 + 8 && sizeof(Animation) == 12, "no padding");
 static_assert(sizeof(Channel) == 4 * 4 + 2 + 2 && sizeof(Joint) == 4 + 48 && sizeof(Skin) == 8, "no padding");
@@ -103,9 +104,10 @@ void for_each_array(SceneType& scene, Visit visit) {
   visit("origin", scene.origin);
   visit("radiosity_cuts", scene.radiosity_cuts);
   visit("reductions", scene.reductions);
+  visit("sheens", scene.sheens);
   visit("framings", scene.framings);
 }
-constexpr std::uint32_t kArrayCount = 46;
+constexpr std::uint32_t kArrayCount = 47;
 constexpr std::uint32_t kSectionCount = 1 + kArrayCount;  // kind 0 is SceneInfo
 
 constexpr std::uint64_t aligned(std::uint64_t offset) {
@@ -124,7 +126,8 @@ constexpr std::uint32_t section_count_of(std::uint32_t version) {
          : version < 13 ? 41
          : version < 14 ? 44
          : version < 15 ? 45
-         : version < 18 ? 46
+         : version < 17 ? 46
+         : version < 18 ? 47
                         : kSectionCount;
 }
 

@@ -180,12 +180,15 @@ bool has_one_value(const Scene& scene, const TextureUse& use, std::uint8_t (&val
   });
 }
 
+static bool is_black(const Scene& scene, const TextureUse& use) {
+  return every_texel(scene, use, [](const Texel& t) { return t.r == 0 && t.g == 0 && t.b == 0; });
+}
+
 bool shows_emission(const Scene& scene, std::uint32_t material) {
   CHECK_LT(material, scene.materials.count);
   const Material& m = scene.materials[material];
   if (is_zero(m.emission)) return false;
-  return m.emission_texture.texture == kNone ||
-         !every_texel(scene, m.emission_texture, [](const Texel& t) { return t.r == 0 && t.g == 0 && t.b == 0; });
+  return m.emission_texture.texture == kNone || !is_black(scene, m.emission_texture);
 }
 
 bool shows_holes(const Scene& scene, std::uint32_t material) {
@@ -215,6 +218,11 @@ bool shows_coat(const Scene& scene, const ClearCoat& coat) {
          !every_texel(scene, coat.strength_texture, [](const Texel& t) { return t.r == 0; });
 }
 
+bool shows_sheen(const Scene& scene, const Sheen& sheen) {
+  if (is_zero(sheen.color)) return false;
+  return sheen.color_texture.texture == kNone || !is_black(scene, sheen.color_texture);
+}
+
 bool shows_grain(const Scene& scene, const Grain& grain) {
   if (grain.direction.x == 0 && grain.direction.y == 0) return false;
   return grain.texture.texture == kNone || !every_texel(scene, grain.texture, [](const Texel& t) { return t.b == 0; });
@@ -238,6 +246,7 @@ bool passes_unchanged(const Scene& scene, std::uint32_t material) {
   if (!m.thin && !is_zero(m.absorption)) return false;
   if (!is_zero(m.diffuse) || !is_zero(m.specular) || !is_zero(m.mirror) || shows_emission(scene, material))
     return false;
+  if (scene.sheens.count && shows_sheen(scene, scene.sheens[material])) return false;
   return scene.clear_coats.empty() || !shows_coat(scene, scene.clear_coats[material]);
 }
 

@@ -140,6 +140,14 @@ struct ClearCoat {
   float normal_scale = 1;
 };
 
+// Sheen of cloth over a material, see brdf/sheen.h.
+struct Sheen {
+  Vec3 color = {0, 0, 0};   // × colour texture; 0: none
+  float roughness = 0;      // × alpha
+  float roughness_low = 0;  // lower bound of the result, as for ClearCoat
+  TextureUse color_texture, roughness_texture;
+};
+
 // A unit vector in 127ths; zero: none. Handedness: above 0, the bitangent is normal × tangent, below 0 its opposite; 0:
 // by the first texture coordinates, against ∂P/∂v.
 struct PackedTangent {
@@ -302,10 +310,11 @@ enum class Invisible : std::uint32_t {
   distant_spot,
   clear_glass,          // materials that light passes as if they were not there
   white_vertex_colors,  // vertices
-  black_coat,           // materials; so is the next
+  black_coat,           // materials; so are the next
   black_grain,
+  black_sheen,
 };
-constexpr int kInvisibleCount = 18;
+constexpr int kInvisibleCount = 19;
 inline Invisible dark_light(LightKind kind) { return static_cast<Invisible>(9 + static_cast<int>(kind)); }
 inline Invisible distant_light(LightKind kind) { return static_cast<Invisible>(12 + static_cast<int>(kind)); }
 static_assert(static_cast<int>(Invisible::dark_point) == 9 && static_cast<int>(Invisible::distant_point) == 12,
@@ -364,6 +373,7 @@ struct Scene {
   Array<const std::uint8_t> node_visible;        // one per node, or empty: all are, except as channels say
   Array<const SceneOrigin> origin;               // one, or none: 0
   Array<const Reduction> reductions;             // one per kind, or none
+  Array<const Sheen> sheens;                     // one per material, or empty
   // One for each animation and one at time 0; or one; or none: measured at the start if needed.
   Array<const Framing> framings;
 };

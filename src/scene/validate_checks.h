@@ -66,6 +66,7 @@ Status validate_material_maps(const Scene& scene);
 Status validate_maps(const Scene& scene, std::uint32_t index);  // of one material
 Status validate_grains(const Scene& scene);
 Status validate_clear_coats(const Scene& scene);
+Status validate_sheens(const Scene& scene);
 Status check_texture_use(const char* array, const char* field, std::uint32_t index, const TextureUse& use,
                          const Scene& scene);
 Status validate_lights_and_cameras(const Scene& scene);

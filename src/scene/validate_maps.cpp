@@ -108,6 +108,33 @@ Status validate_clear_coats(const Scene& scene) {
   return success();
 }
 
+static Status validate_sheen(const Scene& scene, std::uint32_t index) {
+  CHECK_LT(index, scene.sheens.count);
+  const Sheen& sheen = scene.sheens[index];
+  const FieldRange fields[] = {
+      {"color.x", sheen.color.x, 0, 1},
+      {"color.y", sheen.color.y, 0, 1},
+      {"color.z", sheen.color.z, 0, 1},
+      {"roughness", sheen.roughness, 0, 1},
+      {"roughness_low", sheen.roughness_low, 0, sheen.roughness},
+  };
+  RETURN_IF_ERROR(check_fields("sheens", index, fields));
+  RETURN_IF_ERROR(check_texture_use("sheens", "color_texture", index, sheen.color_texture, scene));
+  RETURN_IF_ERROR(check_texture_use("sheens", "roughness_texture", index, sheen.roughness_texture, scene));
+  if (sheen.roughness_texture.texture == kNone && sheen.roughness_low != sheen.roughness)
+    return failure("sheens[%u].roughness_low is %g without a texture, it must be the roughness, %g", index,
+                   static_cast<double>(sheen.roughness_low), static_cast<double>(sheen.roughness));
+  if (!is_zero(sheen.color) && scene.materials[index].unlit)
+    return failure("sheens[%u] covers materials[%u], which is unlit", index, index);
+  return success();
+}
+
+Status validate_sheens(const Scene& scene) {
+  RETURN_IF_ERROR(check_per_material("sheens", scene.sheens.count, scene));
+  for (std::uint32_t i = 0; i < scene.sheens.count; ++i) RETURN_IF_ERROR(validate_sheen(scene, i));
+  return success();
+}
+
 Status validate_material_maps(const Scene& scene) {
   RETURN_IF_ERROR(check_per_material("material_maps", scene.material_maps.count, scene));
   for (std::uint32_t i = 0; i < scene.material_maps.count; ++i) RETURN_IF_ERROR(validate_maps(scene, i));

@@ -45,6 +45,10 @@ std::map<std::uint32_t, Uses> find_uses(const Scene& scene) {
     note(coat.strength_texture, &Uses::red), note(coat.roughness_texture, &Uses::green_blue);
     note(coat.normal, &Uses::normal);
   }
+  for (const Sheen& sheen : scene.sheens) {
+    note(sheen.color_texture, &Uses::color);
+    note(sheen.roughness_texture, &Uses::color), note(sheen.roughness_texture, &Uses::alpha);
+  }
   return uses;
 }
 

@@ -15,13 +15,17 @@ namespace pocketray {
 // Up axis of a file: Z in PLY and STL, the convention of scanners and printers; Y in OBJ and OFF.
 enum class UpAxis { of_format, y, z };
 
+// Transmitting materials of glTF without a volume: closed meshes are bodies, or all are thin, or all are bodies.
+enum class GlassKind { automatic, thin, solid };
+
 struct ImportOptions {
   std::uint32_t texture_side_max = 512;  // larger textures are halved until they fit
   bool mip_maps = true;                  // store smaller levels of textures
   bool strict = false;                   // refuse vertices that are not finite instead of leaving out their faces
   UpAxis up = UpAxis::of_format;         // for formats that do not specify it: OBJ, PLY, STL, OFF
-  bool animations = true;                // false: the model at rest
-  bool reduce = true;                    // leave out what no picture shows
+  GlassKind glass = GlassKind::automatic;
+  bool animations = true;  // false: the model at rest
+  bool reduce = true;      // leave out what no picture shows
   // Files that the model names must lie below this folder, and so must the model. Empty: the model's own folder.
   std::string root;
   std::uint64_t byte_count_max = std::uint64_t(1) << 30;  // refuses larger scenes

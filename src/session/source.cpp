@@ -88,6 +88,9 @@ struct FurnishedModel {
 void apply(const ReadingChoice& choice, ImportOptions* options) {
   CHECK(options != nullptr);
   options->up = choice.up == "z" ? UpAxis::z : choice.up == "y" ? UpAxis::y : UpAxis::of_format;
+  options->glass = choice.glass == "thin"    ? GlassKind::thin
+                   : choice.glass == "solid" ? GlassKind::solid
+                                             : GlassKind::automatic;
   options->strict = choice.strict;
   options->root = choice.root;
 }

@@ -13,7 +13,8 @@ namespace pocketray {
 
 // How to read a model; see ImportOptions.
 struct ReadingChoice {
-  std::string up;  // y or z; empty: by its format
+  std::string up;     // y or z; empty: by its format
+  std::string glass;  // auto, thin or solid; empty: auto
   bool strict = false;
   std::string root;  // folder that must contain the model's files; empty: its own
 };

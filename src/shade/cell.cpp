@@ -4,6 +4,7 @@
 
 #include "base/check.h"
 #include "brdf/clear_coat.h"
+#include "brdf/sheen.h"
 #include "shade/contact.h"
 
 namespace pocketray {
@@ -42,6 +43,9 @@ bool has_texture(const Scene& scene, const Material& m) {
   const auto index = static_cast<std::uint32_t>(&m - scene.materials.data);
   if (const ClearCoat* coat = coat_of(scene, index))
     for (const TextureUse* use : {&coat->strength_texture, &coat->roughness_texture, &coat->normal})
+      if (use->texture != kNone) return true;
+  if (const Sheen* sheen = sheen_of(scene, index))
+    for (const TextureUse* use : {&sheen->color_texture, &sheen->roughness_texture})
       if (use->texture != kNone) return true;
   if (scene.material_maps.empty()) return false;
   CHECK_LT(index, scene.material_maps.count);

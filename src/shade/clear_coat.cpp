@@ -24,6 +24,7 @@ Vec3 coat_normal(const FrameData& frame, const ClearCoat& coat, const Ray& ray, 
 void find_coat(const FrameData& frame, const Ray& ray, const Vec3& normal, Surface* s) {
   const Scene& scene = *frame.scene;
   s->coat = {1, 0, 0, 0, normal};
+  if (!has(frame.mask, Effect::clear_coat)) return;
   const ClearCoat* coat = coat_of(scene, static_cast<std::uint32_t>(s->material - scene.materials.data));
   if (!coat) return;
   effect_entered<Effect::clear_coat>();

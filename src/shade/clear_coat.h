@@ -17,7 +17,7 @@ void add_coat(const FrameData& frame, const Ray& ray, float open, Surface* s);
 // Value of the coat's lobe times the cosine of the light at the coat; 0 without a lobe.
 float coat_reflection(const Surface& s, const Vec3& to_viewer, const Vec3& to_light);
 
-// Value of the base's lobes under the coat; `diffuse` is the value of the diffuse lobe under it.
+// Value of the base's lobes under coat and sheen; `diffuse` is the value of the diffuse lobe under them.
 inline Vec3 value_under_coat(const BrdfInfo& lobe, const Material& m, const Vec3& specular, const Vec3& diffuse,
                              const Surface& s, const Vec3& to_viewer, const Vec3& to_light) {
   const float passes = s.coat.passes;

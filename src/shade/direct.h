@@ -13,7 +13,7 @@ Vec3 direct_light(Tracer* tracer, const Surface& s, const Material& m, const Vec
   const FrameData& frame = *tracer->frame;
   Vec3 sum = {0, 0, 0};
   const bool at_first_hit = tracer->first_surface && same_surface(*tracer->first_surface, s);
-  const LitSurface to = {s, m, to_viewer, weight, s.diffuse * (1 / kPiF), at_first_hit};
+  const LitSurface to = {s, m, to_viewer, weight, diffuse_value<mask>(s), at_first_hit};
   for (int r = 0; r < frame.lights.run_count; ++r) {
     const LightRun& run = frame.lights.runs[r];
     if (run.polygons) {

@@ -17,6 +17,12 @@ constexpr EffectMask kContactEffects =
 constexpr EffectMask kGoesOn = (kContactEffects & ~bit(Effect::absorption)) | bit(Effect::mirror);
 constexpr EffectMask kLobeEffects = bit(Effect::specular) | bit(Effect::mirror);
 
+// Layers over the base. Their light is the business of one instance, that of coats.
+constexpr EffectMask kLayerEffects = bit(Effect::clear_coat) | bit(Effect::sheen);
+constexpr EffectMask as_coat(EffectMask plan) {
+  return has(plan, Effect::sheen) ? plan | bit(Effect::clear_coat) : plan;
+}
+
 // Effects of contacts whose code an instance of radiance holds, whether or not the plan has them.
 constexpr EffectMask held_contacts(EffectMask mask) {
   return has(mask, Effect::refraction)    ? kContactEffects
@@ -61,14 +67,16 @@ constexpr InstanceTable<2> kGlowTable = {
 
 // Materials that vary by maps: material_maps.cpp.
 constexpr EffectMask kMapEffects = bit(Effect::metallic_roughness) | bit(Effect::normal_map) | bit(Effect::occlusion) |
-                                   bit(Effect::anisotropy) | bit(Effect::second_uv) | bit(Effect::clear_coat);
-constexpr EffectMask kHoldingMaps = bit(Effect::anisotropy) | bit(Effect::second_uv) | bit(Effect::clear_coat);
+                                   bit(Effect::anisotropy) | bit(Effect::second_uv) | bit(Effect::clear_coat) |
+                                   bit(Effect::sheen);
+constexpr EffectMask kHoldingMaps =
+    bit(Effect::anisotropy) | bit(Effect::second_uv) | bit(Effect::clear_coat) | bit(Effect::sheen);
 constexpr InstanceTable<2> kMapsTable = {
     kMapEffects | bit(Effect::mip_map),
     {
         // A grain costs more than asking for the other maps.
-        with(bit(Effect::anisotropy), kMapEffects & ~bit(Effect::second_uv) & ~bit(Effect::clear_coat)),
-        with(bit(Effect::second_uv) | bit(Effect::clear_coat), kMapEffects, bit(Effect::mip_map)),
+        with(bit(Effect::anisotropy), kMapEffects & ~bit(Effect::second_uv) & ~kLayerEffects),
+        with(bit(Effect::second_uv) | kLayerEffects, kMapEffects, bit(Effect::mip_map)),
     }};
 
 }  // namespace pocketray

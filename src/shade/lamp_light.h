@@ -54,10 +54,8 @@ template <EffectMask mask>
     all += share;
     if (lamp.view.highest > 0) highest = std::max(highest, dot(s.normal, sample.to_light) * lamp.polygon.scale);
     Vec3 light_out = lobe_value<mask>(frame, to, sample.direction) * share;
-    if constexpr (has(mask, Effect::clear_coat)) {
-      const float coat = max_component(sample.irradiance) * coat_reflection(s, to.to_viewer, sample.direction);
-      light_out += Vec3{coat, coat, coat};
-    }
+    if constexpr (has(mask, Effect::clear_coat))
+      light_out += layer_reflection(s, to.to_viewer, sample.direction) * max_component(sample.irradiance);
     if (!(max_component(light_out * to.weight) > 0)) continue;
     if constexpr (has(mask, Effect::shadow)) {
       light_out *= shadow<mask>(tracer, s, lamp.run, i, &sample, to.at_first_hit);

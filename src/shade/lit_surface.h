@@ -3,6 +3,7 @@
 #include "brdf/brdf_list.h"
 #include "shade/clear_coat.h"
 #include "shade/shadow.h"
+#include "shade/sheen.h"
 #include "shade/tracer.h"
 
 namespace pocketray {
@@ -16,6 +17,19 @@ struct LitSurface {
   Vec3 diffuse;        // value of the diffuse lobe
   bool at_first_hit;
 };
+
+// Value of the diffuse lobe. A sheen's share of Surface::diffuse is for light from everywhere.
+template <EffectMask mask>
+inline Vec3 diffuse_value(const Surface& s) {
+  if constexpr (has(mask, Effect::clear_coat)) return s.sheen.base * (1 / kPiF);
+  return s.diffuse * (1 / kPiF);
+}
+
+// Value of the coat's lobe and the sheen, each times its cosine of the light.
+inline Vec3 layer_reflection(const Surface& s, const Vec3& to_viewer, const Vec3& to_light) {
+  const float coat = coat_reflection(s, to_viewer, to_light);
+  return Vec3{coat, coat, coat} + sheen_reflection(s, to_viewer, to_light);
+}
 
 // The effects on which direct light depends.
 constexpr EffectMask kDirectEffects = bit(Effect::shadow) | bit(Effect::specular) | bit(Effect::metallic_roughness) |
@@ -45,7 +59,7 @@ inline Vec3 reflected_light(const FrameData& frame, const LitSurface& to, const 
                             float cosine) {
   const Vec3 light_out = lobe_value<mask>(frame, to, direction) * irradiance * cosine;
   if constexpr (has(mask, Effect::clear_coat))
-    return light_out + irradiance * coat_reflection(to.surface, to.to_viewer, direction);
+    return light_out + irradiance * layer_reflection(to.surface, to.to_viewer, direction);
   return light_out;
 }
 
@@ -53,7 +67,8 @@ inline Vec3 reflected_light(const FrameData& frame, const LitSurface& to, const 
 template <EffectMask mask>
 inline bool is_matte(const LitSurface& to) {
   if (has(mask, Effect::specular) && !is_zero(to.material.specular)) return false;
-  return !(has(mask, Effect::clear_coat) && to.surface.coat.lobe > 0);
+  if constexpr (has(mask, Effect::clear_coat)) return !(to.surface.coat.lobe > 0) && is_zero(to.surface.sheen.color);
+  return true;
 }
 
 // Returns whether to skip light that reaches the viewer with at most this radiance, because there is none or because it

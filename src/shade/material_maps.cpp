@@ -8,6 +8,7 @@
 #include "shade/clear_coat.h"
 #include "shade/instances.h"
 #include "shade/normal_map.h"
+#include "shade/sheen.h"
 #include "shade/texture.h"
 
 namespace pocketray {
@@ -73,6 +74,19 @@ bool takes_part(const FrameData& frame, Effect effect) {
   return !(mask & kHoldingMaps & kEffectsBuilt) || has(frame.mask, effect);
 }
 
+// Attenuates the base by its sheen, and both by a coat. `normal`: at the vertices, `open`: unoccluded fraction of
+// ambient light.
+void add_layers(const FrameData& frame, const Ray& ray, const Vec3& normal, float passes, float open, Surface* s) {
+  s->glow = s->glow * passes, s->diffuse = s->diffuse * passes, s->sheen.base = s->sheen.base * passes;
+  find_coat(frame, ray, normal, s);
+  const float through_coat = s->coat.passes;
+  if (through_coat < 1) {
+    add_coat(frame, ray, open, s);
+    s->sheen.color = s->sheen.color * through_coat, s->sheen.base = s->sheen.base * through_coat;
+  }
+  s->coat.passes = through_coat * passes;
+}
+
 template <EffectMask mask, bool first>
 void mapped_surface(const FrameData& frame, const Ray& ray, const Hit& hit, Surface* s) {
   frame.kernels.plain_surface(frame, ray, hit, s);
@@ -101,6 +115,9 @@ void mapped_surface(const FrameData& frame, const Ray& ray, const Hit& hit, Surf
     if (scene.grains.count && (!has(mask, Effect::second_uv) || has(frame.mask, Effect::anisotropy)))
       s->grain = surface_grain(frame, scene.grains[s->material - scene.materials.data], *s);
   }
+  float passes = 1;  // through the sheen
+  const bool has_layers = (mask & kLayerEffects & kEffectsBuilt) != 0 && (frame.mask & kLayerEffects) != 0;
+  if (has_layers) passes = find_sheen(frame, ray, s);
   frame.kernels.glow(frame, s);
   if constexpr (has(mask, Effect::occlusion)) {
     if (has(frame.mask, Effect::ambient) && takes_part<mask>(frame, Effect::occlusion))
@@ -111,11 +128,7 @@ void mapped_surface(const FrameData& frame, const Ray& ray, const Hit& hit, Surf
     const SurroundingsFunction surroundings = first ? frame.kernels.first_surroundings : frame.kernels.surroundings;
     s->glow += surroundings(frame, ray, lobes_at(frame, *s, &mapped), *s) * open;
   }
-  if constexpr (has(mask, Effect::clear_coat)) {
-    if (!has(frame.mask, Effect::clear_coat)) return;
-    find_coat(frame, ray, unmapped, s);
-    if (s->coat.passes < 1) add_coat(frame, ray, open, s);
-  }
+  if (has_layers) add_layers(frame, ray, unmapped, passes, open, s);
 }
 
 template <bool first>

@@ -1,6 +1,6 @@
-// Materials that vary by maps (MaterialMaps), use two sets of texture coordinates or have a clear coat. Plans with such
-// an effect have their own surface function: it evaluates the surface without its glow, applies the maps, and adds the
-// glow.
+// Materials that vary by maps (MaterialMaps), use two sets of texture coordinates or have a clear coat or sheen. Plans
+// with such an effect have their own surface function: it evaluates the surface without its glow, applies the maps, and
+// adds the glow.
 #pragma once
 #include "shade/surface.h"
 

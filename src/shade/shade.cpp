@@ -177,7 +177,7 @@ inline Vec3 shade_lobes(Tracer* tracer, const Ray& ray, const Surface& s, const 
   Vec3 sum = s.glow;
   bool scatters = !is_zero(s.diffuse);
   if constexpr (has(mask, Effect::specular)) scatters |= !is_zero(m.specular);
-  if constexpr (has(mask, Effect::clear_coat)) scatters |= s.coat.lobe > 0;
+  if constexpr (has(mask, Effect::clear_coat)) scatters |= s.coat.lobe > 0 || !is_zero(s.sheen.color);
   if (scatters) {
     if constexpr (has(mask, Effect::source_selection))
       sum += selected_light<mask>(tracer, s, m, -ray.direction, path.weight);
@@ -368,6 +368,6 @@ struct RadiancePart {
 
 }  // namespace
 
-RadianceFunction find_radiance_function(EffectMask mask) { return Instantiations<RadiancePart>::find(mask); }
+RadianceFunction find_radiance_function(EffectMask mask) { return Instantiations<RadiancePart>::find(as_coat(mask)); }
 
 }  // namespace pocketray

@@ -6,8 +6,9 @@
 #include "base/float_bits.h"
 #include "base/limits.h"
 #include "brdf/brdf_list.h"
-#include "shade/clear_coat.h"
+#include "shade/instances.h"
 #include "shade/lights.h"
+#include "shade/lit_surface.h"
 #include "shade/tile_shadows.h"
 
 namespace pocketray {
@@ -41,6 +42,12 @@ SourceSearch::SourceSearch(Tracer* tracer, const Surface& surface, const Materia
     diffuse_most_ *= lobe_.diffuse_max;
     specular_most_ = max_component(lobe_.peak(m));
   }
+  if (frame_.mask & kLayerEffects & kEffectsBuilt) {
+    diffuse_ = diffuse_value<kLayerEffects>(surface), diffuse_most_ = max_component(diffuse_);
+    if (shines_) diffuse_most_ *= lobe_.diffuse_max;
+    if (!is_zero(surface.sheen.color))
+      specular_most_ += max_component(surface.sheen.color) * sheen_peak(surface.sheen.roughness);
+  }
   if (shines_by_coat(frame_, surface)) {
     const Material coat = coat_lobe(surface.coat.roughness);
     specular_most_ += surface.coat.lobe * kBrdfList[coat.brdf]->peak(coat).x;
@@ -60,13 +67,13 @@ bool SourceSearch::radiance(const LightPoint& light, std::uint32_t run, Vec3* ra
   if (!lights_up(frame_, surface_, frame_.lights.runs[run], light, &sample)) return false;
   if (!has(frame_.mask, Effect::shadow) && is_below(surface_, sample.direction)) return false;
   const float cosine = dot(surface_.normal, sample.direction);
-  const bool is_coated = has(frame_.mask, Effect::clear_coat);
+  const bool is_coated = (frame_.mask & kLayerEffects & kEffectsBuilt) != 0;
   Vec3 f = diffuse_;
   if (shines_)
     f = is_coated ? value_under_coat(lobe_, material_, specular_, diffuse_, surface_, to_viewer_, sample.direction)
                   : lobe_.value(material_, specular_, diffuse_, surface_, to_viewer_, sample.direction);
   *radiance = f * sample.irradiance * cosine;
-  if (is_coated) *radiance += sample.irradiance * coat_reflection(surface_, to_viewer_, sample.direction);
+  if (is_coated) *radiance += sample.irradiance * layer_reflection(surface_, to_viewer_, sample.direction);
   return true;
 }
 

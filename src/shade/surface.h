@@ -16,11 +16,18 @@ struct SurfacePlace {
 
 // Effect of a clear coat on a surface, see clear_coat.h.
 struct SurfaceCoat {
-  float passes;     // fraction of the base's light that it transmits; 1: there is no coat
+  float passes;     // fraction of the base's light that coat and sheen transmit; 1: there is neither
   float lobe;       // strength of its lobe; 0: none, or the plan has no glossy lobes
   float mirror;     // mirror reflectance; 0: none, or the plan has no mirrors
   float roughness;  // set with a lobe
   Vec3 normal;      // unit
+};
+
+// Sheen of a surface, see sheen.h.
+struct SurfaceSheen {
+  Vec3 color;       // under the coat; 0: none
+  Vec3 base;        // albedo of the diffuse lobe alone, under coat and sheen; Surface::diffuse includes the sheen's
+  float roughness;  // set with a colour
 };
 
 // The normal and the geometric normal are unit vectors on the side from which the ray came.
@@ -38,7 +45,8 @@ struct Surface : LobeFrame {
   float roughness;
   SurfacePlace hit;
   Footprints footprint;  // set with Effect::mip_map
-  SurfaceCoat coat;      // set with Effect::clear_coat
+  SurfaceCoat coat;      // set with Effect::clear_coat or sheen
+  SurfaceSheen sheen;    // likewise
 };
 
 // True if the ray met the back of a one-sided surface. Glass bodies have both sides. Only visible surfaces are culled:

@@ -5,6 +5,7 @@
 
 #include "base/check.h"
 #include "brdf/clear_coat.h"
+#include "brdf/sheen.h"
 #include "shade/trace_spans.h"
 #include "temporal/tile_search.h"
 
@@ -24,7 +25,7 @@ TilePixels pixels_of(const Settings& settings, std::uint32_t column, std::uint32
 
 bool scatters(const Scene& scene, std::uint32_t material) {
   const Material& m = scene.materials[material];
-  return !is_zero(m.diffuse) || !is_zero(m.specular) || coat_of(scene, material);
+  return !is_zero(m.diffuse) || !is_zero(m.specular) || coat_of(scene, material) || sheen_of(scene, material);
 }
 
 // Finds the pixels whose first hits are unchanged and may receive light.

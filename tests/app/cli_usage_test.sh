@@ -54,6 +54,20 @@ if "${run[@]}" render --help | grep -q glTF; then
   printf 'v 0 0 0\nv nan 0 0\nv 0 1 0\nf 1 2 3\n' >nan.obj
   expect number_that_is_none 1 "nan.obj: line 2: 'nan' .*export" render nan.obj --strict -o b.ppm
   expect no_face_left 1 "nan.obj: no triangles .*1 face is left out.*--strict" render nan.obj -o b.ppm
+  # A tetrahedron of glass without a volume.
+  printf '%s' '{"asset":{"version":"2.0"},"buffers":[{"byteLength":72,"uri":"data:application/octet-stream;base64,AAAAAAAAA' \
+    'AAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAAAAAAAAAAAAAAAIA/AAACAAEAAAABAAMAAAADAAIAAQACAAMA"}],"bufferViews":[{"buffer":0,' \
+    '"byteLength":48},{"buffer":0,"byteOffset":48,"byteLength":24}],"accessors":[{"bufferView":0,"count":4,"type":"VEC3",' \
+    '"componentType":5126},{"bufferView":1,"count":12,"type":"SCALAR","componentType":5123}],"meshes":[{"primitives":[{' \
+    '"attributes":{"POSITION":0},"indices":1,"material":0}]}],"nodes":[{"mesh":0}],"scenes":[{"nodes":[0]}],"scene":0,' \
+    '"materials":[{"pbrMetallicRoughness":{"metallicFactor":0},"extensions":{"KHR_materials_transmission":{' \
+    '"transmissionFactor":1}}}]}' >glass.gltf
+  expect glass_is_told 0 'glass without a volume: 1 closed, taken as solid .--glass' bake glass.gltf -o glass.pray
+  expect glass_as_told 0 '4 triangles' bake glass.gltf --glass solid -o told.pray
+  check glass_is_solid cmp glass.pray told.pray
+  "${run[@]}" bake glass.gltf --glass thin -o thin.pray >thin.txt 2>&1
+  check glass_said_thin eval '! cmp -s glass.pray thin.pray && ! grep -q volume thin.txt'
+  expect glass_of_another_kind 1 'auto, thin or solid' plan glass.gltf --glass milk
 fi
 check nothing_was_written test ! -e b.ppm
 

@@ -46,6 +46,17 @@ std::string coated_gltf() {
       "iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mNoaPj/HwAGggL/bOBDIwAAAABJRU5ErkJggg==\"}]");
 }
 
+// A sheen with both its textures.
+std::string cloth_gltf() {
+  const std::string texture = "Texture\":{\"index\":0,\"texCoord\":0}";
+  return triangle_gltf(
+      "{\"extensions\":{\"KHR_materials_sheen\":{\"sheenColorFactor\":[0.5,0.4,0.3],\"sheenRoughnessFactor\":0.5,"
+      "\"sheenColor" +
+          texture + ",\"sheenRoughness" + texture + "}}}",
+      ",\"textures\":[{\"source\":0}],\"images\":[{\"uri\":\"data:image/png;base64,"
+      "iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mNoaPj/HwAGggL/bOBDIwAAAABJRU5ErkJggg==\"}]");
+}
+
 std::string ply(const char* format, const char* count_type, bool binary) {
   std::string file =
       std::string("ply\nformat ") + format + " 1.0\nelement vertex 4\nproperty float x\nproperty float y\n" +
@@ -104,6 +115,7 @@ std::vector<Model> models() {
       {"triangle.gltf", "gltf", triangle_gltf("{}")},
       {"two_sets.gltf", "gltf", two_sets_gltf()},
       {"coated.gltf", "gltf", coated_gltf()},
+      {"cloth.gltf", "gltf", cloth_gltf()},
       {"animated.glb", "glb", animated_glb()},
       {"square.obj", "obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvn 0 0 1\nf 1/1/1 2//1 3/1 -1\nl 1 2\n"},
       {"forms.obj", "obj",

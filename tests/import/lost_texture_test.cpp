@@ -47,6 +47,8 @@ TEST_CASE("gltf_lost_textures_are_named_and_left_out") {
         "\"extensions\":{\"KHR_materials_clearcoat\":{\"clearcoatFactor\":1,\"clearcoatTexture" + lost +
             ",\"clearcoatRoughnessFactor\":1,\"clearcoatRoughnessTexture" + lost + ",\"clearcoatNormalTexture" + lost +
             "}}",
+        "\"extensions\":{\"KHR_materials_sheen\":{\"sheenColorFactor\":[1,1,1],\"sheenColorTexture" + lost +
+            ",\"sheenRoughnessFactor\":1,\"sheenRoughnessTexture" + lost + "}}",
         "\"extensions\":{\"KHR_materials_transmission\":{\"transmissionFactor\":1,\"transmissionTexture" + lost + "}}",
         "\"extensions\":{\"KHR_materials_pbrSpecularGlossiness\":{\"diffuseTexture" + lost +
             ",\"specularGlossinessTexture" + lost + "}}",

@@ -34,7 +34,8 @@ SceneArrays arrays_of(const GeneratedScene& s) {
   copy(scene.positions, &a.positions), copy(scene.normals, &a.normals), copy(scene.uvs, &a.uvs);
   copy(scene.second_uvs, &a.second_uvs), copy(scene.colors, &a.colors), copy(scene.triangles, &a.triangles);
   copy(scene.materials, &a.materials), copy(scene.material_maps, &a.material_maps), copy(scene.grains, &a.grains);
-  copy(scene.clear_coats, &a.clear_coats), copy(scene.tangents, &a.tangents), copy(scene.textures, &a.textures);
+  copy(scene.sheens, &a.sheens), copy(scene.clear_coats, &a.clear_coats), copy(scene.tangents, &a.tangents),
+      copy(scene.textures, &a.textures);
   copy(scene.texels, &a.texels), copy(scene.lights, &a.lights), copy(scene.cameras, &a.cameras);
   copy(scene.nodes, &a.nodes), copy(scene.animations, &a.animations), copy(scene.channels, &a.channels);
   copy(scene.key_times, &a.key_times), copy(scene.key_values, &a.key_values);
@@ -333,7 +334,17 @@ TEST_CASE("hard_73_glass_that_does_nothing_is_left_out") {
 // Goal: textures of one value become factors, whichever the slot; one odd texel keeps them. Method: a box whose
 // material uses them all, in turn.
 TEST_CASE("hard_73_textures_of_one_value_are_factors") {
-  enum { kEmission, kSpecular, kSpecularColor, kCoatStrength, kCoatRoughness, kGrain, kSlotCount };
+  enum {
+    kEmission,
+    kSpecular,
+    kSpecularColor,
+    kCoatStrength,
+    kCoatRoughness,
+    kGrain,
+    kSheenColor,
+    kSheenRoughness,
+    kSlotCount
+  };
   for (int slot = 0; slot < kSlotCount; ++slot)
     for (const bool is_even : {true, false}) {
       CAPTURE(slot);
@@ -347,7 +358,7 @@ TEST_CASE("hard_73_textures_of_one_value_are_factors") {
       Material m;
       m.brdf = kGgx;
       add_material(&s, m);
-      s.material_maps.resize(1), s.clear_coats.resize(1), s.grains.resize(1);
+      s.material_maps.resize(1), s.clear_coats.resize(1), s.grains.resize(1), s.sheens.resize(1);
       MaterialMaps& maps = s.material_maps[0];
       ClearCoat& coat = s.clear_coats[0];
       maps.model = {{0.6f, 0.5f, 0.4f}, {0.3f, 0.25f, 0.2f}, 0.8f};
@@ -362,6 +373,11 @@ TEST_CASE("hard_73_textures_of_one_value_are_factors") {
       if (slot == kCoatStrength) coat.strength_texture = use;
       if (slot == kCoatRoughness) coat.roughness_texture = use, coat.roughness_low = 0.6f * (160 / 255.0f);
       if (slot == kGrain) s.grains[0].direction = {0.7f, 0.2f}, s.grains[0].texture = use;
+      if (slot >= kSheenColor) s.sheens[0].color = {0.9f, 0.6f, 0.5f};
+      if (slot >= kSheenColor) s.sheens[0].roughness = s.sheens[0].roughness_low = 0.6f;
+      if (slot == kSheenColor) s.sheens[0].color_texture = use;
+      if (slot == kSheenRoughness)
+        s.sheens[0].roughness_texture = use, s.sheens[0].roughness_low = 0.6f * (130 / 255.0f);
       s.with_uvs = true;
       add_quad(&s, {-2, 0, 2}, {2, 0, 2}, {2, 0, -2}, {-2, 0, -2}, 0);
       add_box(&s, {-1, 0, -1}, {1, 1, 1}, 0);

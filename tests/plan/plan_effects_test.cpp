@@ -71,6 +71,8 @@ TEST_CASE("plan_effects_follow_the_scene") {
       {bit(F::normal_map), bit(E::normal_map)},
       {bit(F::anisotropy), bit(E::anisotropy) | bit(E::specular) | bit(E::ambient_gloss)},
       {bit(F::clear_coat), bit(E::clear_coat) | bit(E::specular) | bit(E::mirror) | bit(E::ambient_gloss)},
+      {bit(F::sheen), bit(E::sheen)},
+      {bit(F::sheen) | bit(F::texture), bit(E::sheen) | bit(E::texture)},
       {bit(F::occlusion), 0},  // nothing to take away
       {bit(F::occlusion) | bit(F::ambient), bit(E::occlusion) | bit(E::ambient)},
       {bit(F::second_uv), 0},  // no texture
@@ -111,6 +113,26 @@ TEST_CASE("plan_effects_follow_the_textures_of_coats") {
       CHECK(has(mask, Effect::mip_map) == (strength > 0));
       CHECK(has(mask, Effect::second_uv) == (strength > 0 && !is_normal));
       CHECK(has(mask, Effect::normal_map) == (strength > 0 && is_normal));
+    }
+}
+
+// Goal: textures of a sheen call for what they read, and only while it has a colour. Method: as for coats.
+TEST_CASE("plan_effects_follow_the_textures_of_sheens") {
+  for (TextureUse Sheen::*use : {&Sheen::color_texture, &Sheen::roughness_texture})
+    for (float color : {1.0f, 0.0f}) {
+      GeneratedScene s;
+      add_quad(&s, {0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, add_material(&s, Material()));
+      const std::uint32_t texture = add_texture(&s, 2, 2, std::vector<std::array<int, 4>>(4, {{9, 9, 9, 255}}));
+      add_levels(&s, texture);
+      s.textures[texture].uv_set = 1;
+      s.sheens.resize(1);
+      s.sheens[0].color = {0, color, 0}, (s.sheens[0].*use).texture = texture;
+      s.with_uvs = s.with_second_uvs = true;
+      s.bind();
+      const EffectMask mask = plan_effects(s.scene, Settings()).mask;
+      CHECK(has(mask, Effect::sheen) == (color > 0));
+      CHECK(has(mask, Effect::mip_map) == (color > 0));
+      CHECK(has(mask, Effect::second_uv) == (color > 0));
     }
 }
 

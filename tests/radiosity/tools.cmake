@@ -2,6 +2,7 @@
 add_executable(fit_linear_lobes EXCLUDE_FROM_ALL tests/brdf/fit/fit_linear_lobes.cpp)
 target_include_directories(fit_linear_lobes PRIVATE tests)
 target_link_libraries(fit_linear_lobes PRIVATE pocketray_core)
+add_executable(fit_sheen EXCLUDE_FROM_ALL tests/brdf/fit/fit_sheen.cpp)
 # The table and the pictures of `make mach-bands`.
 if(TARGET pocketray_radiosity AND NOT CMAKE_CROSSCOMPILING)
   add_executable(draw_bands EXCLUDE_FROM_ALL tests/mach_bands/draw_bands.cpp tests/radiosity/mach_bands.cpp)

@@ -266,6 +266,26 @@ TEST_CASE("validate_scene_refuses_bad_clear_coats") {
   accepts([](FullScene* f) { f->materials[0].unlit = 1; });
 }
 
+// Goal: a sheen out of range, with an invalid texture or over an unlit material is refused.
+TEST_CASE("validate_scene_refuses_bad_sheens") {
+  for (float bad : {kNan, kInf, 1.01f, -0.5f}) {
+    refuses("sheens[1].color.x", [=](FullScene* f) { f->sheens[1].color.x = bad; });
+    refuses("sheens[0].color.z", [=](FullScene* f) { f->sheens[0].color.z = bad; });
+    refuses("sheens[0].roughness", [=](FullScene* f) { f->sheens[0].roughness = bad; });
+    refuses("sheens[1].roughness_low", [=](FullScene* f) { f->sheens[1].roughness_low = bad; });
+  }
+  refuses("sheens[1].roughness_low", [](FullScene* f) { f->sheens[1].roughness = 0.125f; });
+  refuses("sheens[0].roughness_low is 0 without a texture", [](FullScene* f) { f->sheens[0].roughness = 1; });
+  refuses("sheens[1].color_texture is texture 7 of 2", [](FullScene* f) { f->sheens[1].color_texture.texture = 7; });
+  refuses("sheens[2].roughness_texture has a transform",
+          [](FullScene* f) { f->sheens[2].roughness_texture.m[0][1] = kNan; });
+  refuses("sheens[0] covers materials[0], which is unlit", [](FullScene* f) {
+    f->materials[0].unlit = 1, f->sheens[0].color = {1, 0, 0};
+  });
+  refuses("one for each", [](FullScene* f) { f->sheens.pop_back(); });
+  accepts([](FullScene* f) { f->sheens.clear(); });
+}
+
 // Goal: a texture of the second coordinates finds them, finite, one at each vertex; a normal map has the first ones,
 // whose frame is its own. Method: each wrong in turn.
 TEST_CASE("validate_scene_refuses_bad_second_uvs") {

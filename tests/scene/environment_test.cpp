@@ -84,13 +84,13 @@ TEST_CASE("environment_octahedral_map_covers_the_sphere_without_seams") {
 
 // Goal: files of earlier versions are read: 7 has no environments, grains and tangents, 8 no grains and tangents, 9 no
 // second texture coordinates, 10 no clear coats and divided triangles, 11 no default views, 12 no labels of
-// animations and no origin, 13 no grids that are cut apart, 14 no reductions, 16 no framing. Method: such files, made
-// from today's: a table without the last sections, so that data may begin earlier.
+// animations and no origin, 13 no grids that are cut apart, 14 no reductions, 16 no sheens, 17 no framings. Method:
+// such files, made from today's: a table without the last sections, so that data may begin earlier.
 TEST_CASE("baked_open_reads_files_of_earlier_versions") {
   const struct {
     std::uint32_t version;
     std::size_t sections;
-  } cases[] = {{7, 33}, {8, 35}, {9, 37}, {10, 38}, {11, 40}, {12, 41}, {13, 44}, {14, 45}, {16, 46}};
+  } cases[] = {{7, 33}, {8, 35}, {9, 37}, {10, 38}, {11, 40}, {12, 41}, {13, 44}, {14, 45}, {16, 46}, {17, 47}};
   for (const auto& c : cases) {
     CAPTURE(c.version);
     FullScene full;
@@ -103,10 +103,11 @@ TEST_CASE("baked_open_reads_files_of_earlier_versions") {
     if (c.version < 13) full.animation_labels.clear(), full.node_visible.clear(), full.origin.clear();
     if (c.version < 14) full.radiosity_cuts.clear(), full.radiosity_triangles[3] = kRadiosityGridBit;
     if (c.version < 15) full.reductions.clear();
+    if (c.version < 17) full.sheens.clear();
     full.framings.clear(), full.bind();
     const BakedFile now = bake(full.scene);
     auto data_begin = [](std::size_t sections) { return (kTableAt + sections * kSectionBytes + 63) / 64 * 64; };
-    const std::size_t begin = data_begin(c.sections), shift = data_begin(47) - begin;
+    const std::size_t begin = data_begin(c.sections), shift = data_begin(48) - begin;
     BakedFile before(now.size() - shift);
     std::memset(before.data(), 0, begin);
     std::memcpy(before.data(), now.data(), kTableAt + c.sections * kSectionBytes);
@@ -128,7 +129,7 @@ TEST_CASE("baked_open_reads_files_of_earlier_versions") {
     CHECK((opened.second_uvs.empty() == (c.version < 10) && opened.clear_coats.empty() == (c.version < 11)));
     CHECK((opened.radiosity_splits.empty() == (c.version < 11) && opened.default_view.empty() == (c.version < 12)));
     CHECK((opened.origin.empty() == (c.version < 13) && opened.radiosity_cuts.empty() == (c.version < 14)));
-    put_u32(before, kSectionCountAt, 47);
+    put_u32(before, kSectionCountAt, c.sections == 47 ? 48 : 47);
     fix_checksum(before);
     CHECK_FALSE(baked_open(before.data(), before.size(), &opened).ok);
   }

@@ -102,7 +102,7 @@ void FullScene::bind() {
   scene.reductions = view(reductions);
   scene.environment_info = view(environment_info), scene.environment_texels = view(environment_texels);
   scene.grains = view(grains), scene.tangents = view(tangents), scene.second_uvs = view(second_uvs);
-  scene.clear_coats = view(clear_coats), scene.default_view = view(default_view);
+  scene.sheens = view(sheens), scene.clear_coats = view(clear_coats), scene.default_view = view(default_view);
   scene.framings = view(framings);
   scene.animation_labels = view(animation_labels), scene.node_visible = view(node_visible);
   scene.origin = view(origin);
@@ -148,6 +148,10 @@ void make_full_scene(std::uint64_t seed, std::uint32_t vertex_count, std::uint32
   ClearCoat& coat = full->clear_coats[1];
   coat.strength = 0.75f, coat.roughness = 0.5f, coat.roughness_low = 0.25f, coat.normal_scale = -2;
   coat.strength_texture.texture = coat.roughness_texture.texture = 1, coat.normal.texture = 0;
+  full->sheens.resize(full->materials.size());
+  Sheen& sheen = full->sheens[1];
+  sheen.color = {0.75f, 0.5f, 0.25f}, sheen.roughness = 0.5f, sheen.roughness_low = 0.25f;
+  sheen.color_texture.texture = 0, sheen.roughness_texture.texture = 1;
   full->default_view = {{1, 2, {0, 0.6f, -0.8f}, 0.5f}};
   full->framings = {{{1, 2, 3}, {1, 2, -4}, {0, 0.6f, 0.8f}, {}}};
   for (auto& side : full->framings[0].reach)

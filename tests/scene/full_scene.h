@@ -39,6 +39,7 @@ struct FullScene {
   std::vector<std::uint32_t> environment_texels;
   std::vector<pocketray::Grain> grains;
   std::vector<pocketray::ClearCoat> clear_coats;
+  std::vector<pocketray::Sheen> sheens;
   std::vector<pocketray::DefaultView> default_view;
   std::vector<pocketray::Framing> framings;
   std::vector<pocketray::AnimationLabel> animation_labels;

@@ -20,16 +20,17 @@ std::uint32_t add(GeneratedScene* s, const std::array<int, 4>& texel) {
   return texture;
 }
 
-// The format that the texture gets for the uses that `use` sets, and as a grain's or a coat's.
+// The format that the texture gets for the uses that `use` sets, and as a grain's, a coat's or a sheen's.
 template <class Use>
 TexelFormat format_for(const std::array<int, 4>& texel, Use use, bool turns_a_grain = false,
-                       TextureUse ClearCoat::*coat = nullptr) {
+                       TextureUse ClearCoat::*coat = nullptr, TextureUse Sheen::*sheen = nullptr) {
   GeneratedScene s;
   const std::uint32_t texture = add(&s, texel), material = add_material(&s, Material());
   s.material_maps.resize(s.materials.size());
   use(&s.materials[material], &s.material_maps[material], texture);
   if (turns_a_grain) s.grains.resize(s.materials.size()), s.grains[material].texture.texture = texture;
   if (coat) s.clear_coats.resize(s.materials.size()), (s.clear_coats[material].*coat).texture = texture;
+  if (sheen) s.sheens.resize(s.materials.size()), (s.sheens[material].*sheen).texture = texture;
   add_quad(&s, {0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, material);
   s.with_uvs = true;
   s.bind();
@@ -80,6 +81,8 @@ TEST_CASE("compress_chooses_blocks_by_use") {
   CHECK(format_for(plain, nothing, false, &ClearCoat::roughness_texture) == TexelFormat::green_blue8);
   CHECK(format_for(plain, nothing, false, &ClearCoat::normal) == TexelFormat::normal8);
   CHECK(format_for(plain, lobes, false, &ClearCoat::strength_texture) == TexelFormat::numbers12);
+  CHECK(format_for({{9, 9, 9, 77}}, nothing, false, nullptr, &Sheen::color_texture) == TexelFormat::color4);
+  CHECK(format_for({{9, 9, 9, 77}}, nothing, false, nullptr, &Sheen::roughness_texture) == TexelFormat::color_alpha8);
 }
 
 // Goal: textures that share texels still do, and the error is reported once; a texture too small for blocks stays

@@ -92,6 +92,8 @@ TEST_CASE("source_selection_errs_within_the_tolerance") {
       if (seed % 2 == 0)  // the glossy lobe alone
         for (Material& m : s->materials)
           if (!is_zero(m.specular)) m.diffuse = {0, 0, 0};
+      for (Sheen& sheen : s->sheens)  // one colour for light from everywhere and from lights: see kDirect
+        if (!is_zero(sheen.color)) sheen.color = {0.7f, 0.7f, 0.7f}, sheen.color_texture = TextureUse();
       s->bind();
       const Traced all = trace(s->scene, settings_of(features, 0), false);
       std::uint64_t more_rays = all.shadow_rays + 1;

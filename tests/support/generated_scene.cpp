@@ -92,6 +92,26 @@ void add_coats(GeneratedScene* s, std::uint32_t features, Rng* rng) {
   last.roughness_texture.texture = add_noise_texture(s, rng, false), last.roughness_low = 0.05f;
 }
 
+// Smooth to rough sheens on opaque surfaces, some of them coated; one has whatever textures there are.
+void add_sheens(GeneratedScene* s, std::uint32_t features, std::uint64_t seed) {
+  if (!has(features, Feature::sheen)) return;
+  s->sheens.resize(s->materials.size());
+  const struct {
+    std::uint32_t material;
+    float roughness;
+  } sheens[] = {{0, 0.6f}, {1, 0}, {2, 0.9f}, {3, 0.35f}, {8, 0.5f}};
+  for (const auto& sheen : sheens) {
+    Sheen& made = s->sheens[sheen.material];
+    made.color = {0.7f, 0.5f, 0.2f + 0.1f * static_cast<float>(sheen.material)};
+    made.roughness = made.roughness_low = sheen.roughness;
+  }
+  if (!has(features, Feature::texture)) return;
+  Rng rng = make_rng(seed + 1);  // its own: other scenes keep their numbers
+  Sheen& last = s->sheens[2];
+  last.color_texture.texture = add_noise_texture(s, &rng, false);
+  last.roughness_texture.texture = add_noise_texture(s, &rng, true), last.roughness_low = 0.1f;
+}
+
 void add_bodies(GeneratedScene* s, std::uint32_t features, Rng* rng) {
   Material shiny = matte(random_color(rng)), reflecting = matte(random_color(rng) * 0.5f),
            glass = matte(random_color(rng)), core = glass;
@@ -182,6 +202,7 @@ void add_mip_maps(GeneratedScene* s) {
   for (MaterialMaps& maps : s->material_maps)
     repeat(&maps.metallic_roughness), repeat(&maps.occlusion), repeat(&maps.specular);
   for (ClearCoat& coat : s->clear_coats) repeat(&coat.strength_texture), repeat(&coat.roughness_texture);
+  for (Sheen& sheen : s->sheens) repeat(&sheen.color_texture), repeat(&sheen.roughness_texture);
 }
 
 // Two textures of three read the second coordinates, but those of normals cannot.
@@ -206,6 +227,7 @@ std::unique_ptr<GeneratedScene> generate_scene(std::uint32_t features, std::uint
   add_mapped_box(s.get(), features, &rng);
   add_brushed_box(s.get(), features, &rng);
   add_coats(s.get(), features, &rng);
+  add_sheens(s.get(), features, seed);
   if (!s->material_maps.empty()) s->material_maps.resize(s->materials.size());
   if (!s->grains.empty()) s->grains.resize(s->materials.size());
   if (has(features, Feature::mip_map)) add_mip_maps(s.get());
@@ -227,7 +249,7 @@ Settings settings_for(std::uint32_t features, std::uint32_t width, std::uint32_t
   settings.width = width;
   settings.height = height;
   settings.samples_per_pixel = has(features, Feature::supersampling) ? 2 : 1;
-  const std::uint32_t lit = features & ~bit(Feature::second_uv) & ~bit(Feature::clear_coat);
+  const std::uint32_t lit = features & ~bit(Feature::second_uv) & ~bit(Feature::clear_coat) & ~bit(Feature::sheen);
   settings.points_per_area_light = lit % 3 == 0 ? 9 : 2;  // in groups, or tested one by one
   return settings;
 }

@@ -38,8 +38,9 @@ enum class Feature : int {
   anisotropy,
   second_uv,  // of whatever textures there are
   clear_coat,
+  sheen,
 };
-constexpr int kFeatureCount = 25;
+constexpr int kFeatureCount = 26;
 constexpr std::uint32_t bit(Feature feature) { return 1u << static_cast<int>(feature); }
 constexpr std::uint32_t kAllFeatures = (1u << kFeatureCount) - 1;
 constexpr bool has(std::uint32_t features, Feature feature) { return (features & bit(feature)) != 0; }
@@ -55,6 +56,7 @@ struct GeneratedScene {
   std::vector<MaterialMaps> material_maps;
   std::vector<Grain> grains;
   std::vector<ClearCoat> clear_coats;
+  std::vector<Sheen> sheens;
   std::vector<PackedTangent> tangents;  // of the first vertices; the rest have none
   std::vector<Texture> textures;
   std::vector<std::uint32_t> texels;

@@ -46,8 +46,8 @@ for kind in ${@:-setting effect lobe accelerator indirect device}; do
       ;;
     effect)  # its bit, its row and its rule; the suite writes the table of pairs anew
       count=$(sed -n 's|^constexpr int kEffectCount = \([0-9]*\);|\1|p' src/effect/effect.h)
-      sed -i "s|^  clear_coat,|&\n  glint,|; s|kEffectCount = $count|kEffectCount = $((count + 1))|" src/effect/effect.h
-      sed -i 's|^    {Effect::clear_coat, .*|&\n    {Effect::glint, "glint", "many samples"},|' src/effect/effect_list.h
+      sed -i "s|^  sheen,|&\n  glint,|; s|kEffectCount = $count|kEffectCount = $((count + 1))|" src/effect/effect.h
+      sed -i 's|^    {Effect::sheen, .*|&\n    {Effect::glint, "glint", "many samples"},|' src/effect/effect_list.h
       rule='{Effect::glint, [](const EffectCall\& c) { return decided(c.settings.samples_per_pixel > 8, "glints"); }},'
       sed -i "s|^    {Effect::animation, .*|&\n    $rule|" src/plan/effects/picture.cpp
       for file in src/effect/effect.h src/effect/effect_list.h src/plan/effects/picture.cpp; do edited $file; done

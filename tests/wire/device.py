@@ -13,7 +13,7 @@ EFFECTS = ["shadow", "specular", "mirror", "refraction", "absorption", "alpha-ma
            "supersampling", "animation", "back-face-culling", "radiosity", "instant-radiosity",
            "ambient-gloss", "metallic-roughness", "normal-map", "occlusion", "mip-map", "selective", "environment",
            "undersampling", "source-selection", "environment-shadow",
-           "anisotropy", "second-uv", "clear-coat"]
+           "anisotropy", "second-uv", "clear-coat", "sheen"]
 
 # ---- Scenes: the hash
 

@@ -152,6 +152,13 @@ struct GltfCoatTextures {
 GltfCoatTextures gltf_coat_textures(const tinygltf::Material& source);
 ClearCoat gltf_read_coat(GltfFile* file, const tinygltf::Material& source);
 
+// gltf_sheen.cpp: sheen of a material, and its textures if it has one.
+struct GltfSheenTextures {
+  tinygltf::TextureInfo color, roughness;
+};
+GltfSheenTextures gltf_sheen_textures(const tinygltf::Material& source);
+Sheen gltf_read_sheen(GltfFile* file, const tinygltf::Material& source);
+
 // gltf_mesh.cpp: the primitives of a mesh that make triangles.
 std::vector<MeshData> gltf_mesh(GltfFile* file, int mesh);
 

@@ -110,6 +110,7 @@ GltfUvSets gltf_choose_uv_sets(GltfFile* file, const tinygltf::Material& source)
   const tinygltf::PbrMetallicRoughness& pbr = source.pbrMetallicRoughness;
   const SpecularTextures specular = specular_textures(source);
   const GltfCoatTextures coat = gltf_coat_textures(source);
+  const GltfSheenTextures sheen = gltf_sheen_textures(source);
   const bool leads = source.normalTexture.index < 0;  // the tangent frame serves only the coat's normals
   const tinygltf::Value* anisotropy = gltf_extension(source.extensions, "KHR_materials_anisotropy");
   const bool has_grain = anisotropy && gltf_number(*anisotropy, "anisotropyStrength", 0) > 0;
@@ -130,7 +131,9 @@ GltfUvSets gltf_choose_uv_sets(GltfFile* file, const tinygltf::Material& source)
              {"emission", source.emissiveTexture, is_lit && glows},
              {"occlusion", plain(source.occlusionTexture), is_lit},
              {"clear coat", coat.strength, is_lit},
-             {"clear coat roughness", coat.roughness, is_lit}};
+             {"clear coat roughness", coat.roughness, is_lit},
+             {"sheen colour", sheen.color, is_lit},
+             {"sheen roughness", sheen.roughness, is_lit}};
   const char* first = nullptr;
   GltfUvSets sets;
   for (const auto& texture : all) {

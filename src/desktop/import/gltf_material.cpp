@@ -155,10 +155,13 @@ static std::uint32_t read_material(GltfFile* file, int index, const tinygltf::Ma
   Material material = convert(file, source, &maps);
   const Grain grain = read_grain(file, source, material);
   const ClearCoat coat = gltf_read_coat(file, source);
+  const Sheen sheen = gltf_read_sheen(file, source);
   const bool needs_uvs = material.diffuse_texture.texture != kNone || material.emission_texture.texture != kNone ||
-                         has_map(maps) || has_strength(grain) || is_textured(coat);
+                         has_map(maps) || has_strength(grain) || is_textured(coat) || is_textured(sheen);
   if (index >= 0 && needs_uvs) file->uv_sets[static_cast<std::size_t>(index)] = file->current_uv_sets;
   const std::uint32_t added = add_material(file->builder, material, source.name);
+  if (!is_zero(material.transmission) && !gltf_extension(source.extensions, "KHR_materials_volume"))
+    file->builder->glass.push_back(added);
   if (has_map(maps)) {
     out.material_maps.resize(added);
     out.material_maps.push_back(maps);
@@ -170,6 +173,10 @@ static std::uint32_t read_material(GltfFile* file, int index, const tinygltf::Ma
   if (coat.strength > 0) {
     out.clear_coats.resize(added);
     out.clear_coats.push_back(coat);
+  }
+  if (!is_zero(sheen.color)) {
+    out.sheens.resize(added);
+    out.sheens.push_back(sheen);
   }
   return added;
 }

@@ -30,6 +30,7 @@ void each_use(SceneArrays* arrays, Visit visit) {
   for (Grain& grain : arrays->grains) visit(&grain.texture);
   for (ClearCoat& coat : arrays->clear_coats)
     for (TextureUse* use : {&coat.strength_texture, &coat.roughness_texture, &coat.normal}) visit(use);
+  for (Sheen& sheen : arrays->sheens) visit(&sheen.color_texture), visit(&sheen.roughness_texture);
 }
 
 class Reducer {
@@ -49,6 +50,7 @@ class Reducer {
   bool fold_color(std::uint32_t index);
   bool fold_emission(std::uint32_t index);
   void fold_coat(std::uint32_t index);
+  void fold_sheen(std::uint32_t index);
   void fold_grain(std::uint32_t index);
   void reduce_colors();
   void reduce_glass();
@@ -194,6 +196,27 @@ void Reducer::fold_coat(std::uint32_t index) {
   if (coat.roughness_texture.texture == kNone || !has_one_value(scene_, coat.roughness_texture, value)) return;
   coat.roughness = std::max(coat.roughness * (static_cast<float>(value[1]) / 255), coat.roughness_low);
   coat.roughness_low = coat.roughness, coat.roughness_texture = TextureUse();
+}
+
+// Sets colour and roughness as find_sheen() of shade/sheen.cpp does at every point.
+void Reducer::fold_sheen(std::uint32_t index) {
+  if (index >= out_.sheens.size() || is_zero(out_.sheens[index].color)) return;
+  Sheen& sheen = out_.sheens[index];
+  if (!shows_sheen(scene_, sheen)) {
+    sheen = Sheen(), note(Invisible::black_sheen);
+    return;
+  }
+  std::uint8_t value[4];
+  if (sheen.color_texture.texture != kNone && has_one_value(scene_, sheen.color_texture, value)) {
+    const Vec3 color = {srgb_to_linear(value[0]), srgb_to_linear(value[1]), srgb_to_linear(value[2])};
+    if (survive_filters(sheen.color_texture, {color.x, color.y, color.z}))
+      sheen.color *= color, sheen.color_texture = TextureUse();
+  }
+  if (sheen.roughness_texture.texture == kNone || !has_one_value(scene_, sheen.roughness_texture, value)) return;
+  const float alpha = static_cast<float>(value[3]) * (1.0f / 255);
+  if (!survive_filters(sheen.roughness_texture, {alpha})) return;
+  sheen.roughness = std::max(sheen.roughness * alpha, sheen.roughness_low);
+  sheen.roughness_low = sheen.roughness, sheen.roughness_texture = TextureUse();
 }
 
 void Reducer::fold_grain(std::uint32_t index) {
@@ -346,6 +369,7 @@ void Reducer::reduce_all() {
     reduce_maps(i);
     fold_metallic_roughness(i);
     fold_coat(i);
+    fold_sheen(i);
     fold_grain(i);
     const bool folds_color = fold_color(i), folds_emission = fold_emission(i);
     if (folds_color || folds_emission) note(Invisible::even_color);

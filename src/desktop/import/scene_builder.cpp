@@ -6,6 +6,7 @@
 #include "base/check.h"
 #include "base/limits.h"
 #include "desktop/import/broken_faces.h"
+#include "desktop/import/glass.h"
 #include "desktop/import/import_error.h"
 #include "desktop/import/origin.h"
 #include "desktop/import/reduce.h"
@@ -214,7 +215,7 @@ Scene view_of(const SceneArrays& arrays) {
   scene.uvs = view(arrays.uvs), scene.second_uvs = view(arrays.second_uvs), scene.colors = view(arrays.colors);
   scene.triangles = view(arrays.triangles), scene.materials = view(arrays.materials),
   scene.material_maps = view(arrays.material_maps), scene.grains = view(arrays.grains);
-  scene.clear_coats = view(arrays.clear_coats);
+  scene.clear_coats = view(arrays.clear_coats), scene.sheens = view(arrays.sheens);
   scene.tangents = view(arrays.tangents);
   scene.textures = view(arrays.textures), scene.texels = view(arrays.texels);
   scene.lights = view(arrays.lights), scene.cameras = view(arrays.cameras);
@@ -287,13 +288,17 @@ void finish_scene(SceneBuilder* builder, const std::string& name, ImportedScene*
                 why.empty() ? "" : ")");
   }
   if (out.materials.empty()) out.materials.emplace_back();
+  decide_glass(builder);
   std::size_t count = out.positions.size();
   if (!out.normals.empty()) out.normals.resize(count, Vec3{0, 0, 0});
-  bool textured = std::any_of(out.materials.begin(), out.materials.end(), has_texture) ||
-                  std::any_of(out.clear_coats.begin(), out.clear_coats.end(), is_textured) ||
-                  std::any_of(out.material_maps.begin(), out.material_maps.end(), has_map) ||
-                  std::any_of(out.grains.begin(), out.grains.end(),
-                              [](const Grain& grain) { return grain.texture.texture != kNone; });
+  bool textured =
+      std::any_of(out.materials.begin(), out.materials.end(), has_texture) ||
+      std::any_of(out.clear_coats.begin(), out.clear_coats.end(),
+                  [](const ClearCoat& coat) { return is_textured(coat); }) ||
+      std::any_of(out.sheens.begin(), out.sheens.end(), [](const Sheen& sheen) { return is_textured(sheen); }) ||
+      std::any_of(out.material_maps.begin(), out.material_maps.end(), has_map) ||
+      std::any_of(out.grains.begin(), out.grains.end(),
+                  [](const Grain& grain) { return grain.texture.texture != kNone; });
   if (textured || !out.uvs.empty()) out.uvs.resize(count, Vec2{0, 0});
   const bool reads_second =
       std::any_of(out.textures.begin(), out.textures.end(), [](const Texture& texture) { return texture.uv_set > 0; });
@@ -301,6 +306,7 @@ void finish_scene(SceneBuilder* builder, const std::string& name, ImportedScene*
   if (!out.material_maps.empty()) out.material_maps.resize(out.materials.size());
   if (!out.grains.empty()) out.grains.resize(out.materials.size());
   if (!out.clear_coats.empty()) out.clear_coats.resize(out.materials.size());
+  if (!out.sheens.empty()) out.sheens.resize(out.materials.size());
   make_tangents(builder);
   if (!out.colors.empty()) out.colors.resize(count, Rgba16{65535, 65535, 65535, 65535});
   if (!out.normals.empty() && !out.rest_positions.empty())

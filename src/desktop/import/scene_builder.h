@@ -46,6 +46,7 @@ struct SceneArrays {
   std::vector<MaterialMaps> material_maps;  // of the first materials; the rest have none
   std::vector<Grain> grains;                // likewise
   std::vector<ClearCoat> clear_coats;       // likewise
+  std::vector<Sheen> sheens;                // likewise
   std::vector<PackedTangent> tangents;      // of the first vertices; see tangents.h
   std::vector<Texture> textures;
   std::vector<std::uint32_t> texels;
@@ -78,6 +79,7 @@ struct SceneBuilder {
   ImportOptions options;
   std::shared_ptr<SceneArrays> out = std::make_shared<SceneArrays>();
   std::vector<std::string> material_names;  // of the first materials
+  std::vector<std::uint32_t> glass;         // materials that transmit, of which the file has no volume
   std::vector<PartSource> parts;
   std::uint64_t bytes_charged = 0;
   FilesRead files;
@@ -122,6 +124,9 @@ void finish_scene(SceneBuilder* builder, const std::string& name, ImportedScene*
 void require_invertible(const Transform& t, const std::string& name);
 
 inline bool has_strength(const Grain& grain) { return grain.direction.x != 0 || grain.direction.y != 0; }
+inline bool is_textured(const Sheen& sheen) {
+  return sheen.color_texture.texture != kNone || sheen.roughness_texture.texture != kNone;
+}
 inline bool is_textured(const ClearCoat& coat) {
   return coat.strength_texture.texture != kNone || coat.roughness_texture.texture != kNone ||
          coat.normal.texture != kNone;

@@ -59,7 +59,7 @@ Vec3d value_in_model(const Reference& reference, const ReferenceSurface& s, cons
   if (reflects_surroundings(m))
     value = glossy_lobe(s).exact_value(m, s.specular, {0, 0, 0}, s, to_viewer, to_light) * s.passes;
   value = (value + coat_value(s, to_viewer, to_light)) * s.open;
-  const Vec3d diffuse = s.diffuse * (1 / kPi);
+  const Vec3d diffuse = s.even * (1 / kPi);
   if (!has(frame.mask, Effect::environment_shadow) || is_zero(diffuse)) return value + diffuse * s.open;
   return value + diffuse * transmittance(reference.world, leave(frame, s, to_light, kInfinity), {kNone, nullptr, true});
 }
@@ -183,10 +183,10 @@ Vec3d environment_light_as_rendered(const Reference& reference, const ReferenceS
   const FrameData& frame = *reference.world.frame;
   const Scene& scene = *frame.scene;
   if (!environment_lights(scene, frame.mask, frame.settings.indirect)) return {0, 0, 0};
-  const bool casts = is_first && has(frame.mask, Effect::environment_shadow) && !is_zero(s.diffuse);
+  const bool casts = is_first && has(frame.mask, Effect::environment_shadow) && !is_zero(s.even);
   Vec3d sum = {0, 0, 0};
   if (environment_lights_diffuse(frame.mask))
-    sum = s.diffuse * environment_irradiance(scene.environment_info[0], s.normal) *
+    sum = s.even * environment_irradiance(scene.environment_info[0], s.normal) *
           (casts ? openness_as_rendered(reference, s) : Vec3d{s.open, s.open, s.open});
   if (reflects_surroundings(lobes_of(s))) {
     const Vec3 normal = to_float(s.normal);

@@ -35,7 +35,7 @@ void follow_light(const Reference& reference, const ReferenceSurface& light, con
     if (hit.triangle == kNone) return;
     ReferenceSurface s = reference_surface(frame, hit, ray.direction);
     const Material& m = lobes_of(s);
-    if (bounce > 0 && (!is_zero(s.diffuse) || !is_zero(m.specular)))
+    if (bounce > 0 && (!is_zero(s.even) || !is_zero(m.specular)))
       remember(s.point, {way, kMirrorMargin * guide->cell_size, kByMirrors}, guide);
     if (!is_specular(m) || m.unlit) return;
     way = s.point;

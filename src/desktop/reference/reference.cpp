@@ -134,7 +134,7 @@ Vec3d trace_path(const Reference& reference, const ReferenceOptions& options, Re
              path.weight * radiance_behind(frame, ray.direction) * environment_weight(reference, ray.direction, path);
     if (s.material->unlit && has(frame.mask, Effect::emission)) return sum + path.weight * s.diffuse;
     if (!is_zero(s.emission)) sum += path.weight * s.emission * emission_weight(reference, s, ray.direction, path);
-    sum += exact_indirect(*frame.scene, path.weight * s.diffuse, model) * s.open;
+    sum += exact_indirect(*frame.scene, path.weight * s.even, model) * s.open;
     if (model) sum += path.weight * reflected_surroundings(frame, s, -ray.direction);
     if (!model) s.cell = find_cell(reference.guide, s.point);
     if (lobe_weight(s, -ray.direction) > 0)

@@ -34,7 +34,7 @@ Vec3d shade(const Reference& reference, const ReferenceRay& ray, const Reference
   const Material& m = *s.material;
   if (m.unlit && has(frame.mask, Effect::emission)) return s.diffuse;
   const double open = has(frame.mask, Effect::ambient) ? s.open : 1;
-  Vec3d sum = s.emission + exact_indirect_of(*frame.scene, s.diffuse, frame.mask) * open;
+  Vec3d sum = s.emission + exact_indirect_of(*frame.scene, s.even, frame.mask) * open;
   sum += reflected_surroundings(frame, s, -ray.direction) +
          environment_light_as_rendered(reference, s, -ray.direction, branch.depth == 0);
   if (lobe_weight(s, -ray.direction) > 0) sum += sum_light_points(reference, s, -ray.direction, true);

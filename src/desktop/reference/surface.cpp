@@ -4,6 +4,7 @@
 #include "brdf/clear_coat.h"
 #include "brdf/directions.h"
 #include "brdf/microfacet.h"
+#include "brdf/sheen.h"
 #include "indirect/environment.h"
 #include "scene/metallic_roughness.h"
 #include "shade/texture.h"
@@ -125,10 +126,26 @@ Vec3d normal_of_map(const FrameData& frame, const TextureUse& map, float scale, 
   return is_zero(mapped) ? s.normal : mapped;
 }
 
+// KHR_materials_sheen. The base's specular part is not attenuated here, but by ReferenceSurface::passes.
+void put_sheen_on(const FrameData& frame, const Vec3d& direction, ReferenceSurface* s) {
+  s->sheen = {0, 0, 0}, s->even = s->diffuse, s->passes = 1;
+  const Sheen* sheen = sheen_of(*frame.scene, frame.scene->triangles[s->triangle].material());
+  if (!sheen || !has(frame.mask, Effect::sheen)) return;
+  s->sheen = to_double(sheen->color), s->sheen_roughness = static_cast<double>(sheen->roughness);
+  if (sheen->color_texture.texture != kNone) s->sheen *= to_double(color_at(frame, sheen->color_texture, *s).rgb);
+  if (sheen->roughness_texture.texture != kNone)
+    s->sheen_roughness *= static_cast<double>(color_at(frame, sheen->roughness_texture, *s).alpha);
+  s->sheen_roughness = std::fmax(s->sheen_roughness, static_cast<double>(sheen->roughness_low));
+  const double albedo = sheen_albedo(s->sheen_roughness, dot(s->normal, normalize(direction)));
+  s->passes = 1 - max_component(s->sheen) * albedo;
+  s->diffuse = s->diffuse * s->passes, s->mirror = s->mirror * s->passes, s->emission = s->emission * s->passes;
+  s->even = s->diffuse + s->sheen * albedo;
+}
+
 // KHR_materials_clearcoat; `unmapped` is the normal at the vertices.
 void put_coat_on(const FrameData& frame, const Vec3d* corner, const Vec3d& direction, const Vec3d& unmapped,
                  ReferenceSurface* s) {
-  s->passes = 1, s->coat_lobe = s->coat_mirror = 0, s->coat_normal = unmapped;
+  s->coat_lobe = s->coat_mirror = 0, s->coat_normal = unmapped;
   const ClearCoat* coat = coat_of(*frame.scene, frame.scene->triangles[s->triangle].material());
   if (!coat || !has(frame.mask, Effect::clear_coat)) return;
   auto texel = [&](const TextureUse& use, int channel) {
@@ -143,11 +160,12 @@ void put_coat_on(const FrameData& frame, const Vec3d* corner, const Vec3d& direc
     s->coat_normal = normal_of_map(frame, coat->normal, coat->normal_scale, corner, direction, bare);
   }
   const double fresnel = coat_fresnel(dot(s->coat_normal, normalize(direction)));
-  s->passes = 1 - strength * fresnel;
+  const double passes = 1 - strength * fresnel;
   s->coat = coat_lobe(static_cast<float>(roughness));
   if (has(frame.mask, Effect::specular) && !is_zero(s->coat.specular)) s->coat_lobe = strength;
   if (has(frame.mask, Effect::mirror)) s->coat_mirror = strength * fresnel * coat_mirror_share(roughness);
-  s->diffuse = s->diffuse * s->passes, s->mirror = s->mirror * s->passes, s->emission = s->emission * s->passes;
+  s->diffuse = s->diffuse * passes, s->mirror = s->mirror * passes, s->emission = s->emission * passes;
+  s->sheen = s->sheen * passes, s->even = s->even * passes, s->passes *= passes;
 }
 
 // KHR_materials_anisotropy.
@@ -223,6 +241,7 @@ ReferenceSurface reference_surface(const FrameData& frame, const ReferenceHit& h
   s.emission = {0, 0, 0};
   if (!is_zero(m.emission) && (s.front || m.double_sided))
     s.emission = to_double(m.emission) * texel(m.emission_texture);
+  put_sheen_on(frame, direction, &s);
   put_coat_on(frame, corner, direction, unmapped, &s);
   return s;
 }
@@ -267,15 +286,20 @@ Vec3d coat_value(const ReferenceSurface& s, const Vec3d& to_viewer, const Vec3d&
          (s.coat_lobe * at_coat / cosine);
 }
 
+Vec3d sheen_value(const ReferenceSurface& s, const Vec3d& to_viewer, const Vec3d& to_light) {
+  if (is_zero(s.sheen)) return {0, 0, 0};
+  return s.sheen * sheen_value(s.sheen_roughness, s.normal, to_viewer, to_light);
+}
+
 double lobe_weight(const ReferenceSurface& s, const Vec3d& to_viewer) {
-  return max_component(s.diffuse) + glossy_weight(s) + coat_weight(s, to_viewer);
+  return max_component(s.diffuse) + max_component(s.sheen) + glossy_weight(s) + coat_weight(s, to_viewer);
 }
 
 Vec3d lobe_value(const ReferenceSurface& s, const Vec3d& to_viewer, const Vec3d& to_light) {
   Vec3d value = s.diffuse * (1 / kPi);
   if (!is_zero(lobes_of(s).specular) && s.passes > 0)
     value = glossy_lobe(s).exact_value(lobes_of(s), s.specular, value / s.passes, s, to_viewer, to_light) * s.passes;
-  return value + coat_value(s, to_viewer, to_light);
+  return value + sheen_value(s, to_viewer, to_light) + coat_value(s, to_viewer, to_light);
 }
 
 double lobe_density(const ReferenceSurface& s, const Vec3d& to_viewer, const Vec3d& to_light) {

@@ -20,7 +20,12 @@ struct ReferenceSurface : LobeFrameD {
   Material mapped;  // the material with its lobes modified by its maps, if is_mapped
   bool is_mapped;
   double open;  // fraction of ambient light left by an occlusion map
-  // The clear coat, as in SurfaceCoat. Diffuse, mirror and emission include its transmittance; `specular` does not.
+  // The sheen under the coat, as in SurfaceSheen, and the albedo of the diffuse lobe and the sheen for light from
+  // everywhere.
+  Vec3d sheen, even;
+  double sheen_roughness = 0;
+  // The clear coat, as in SurfaceCoat. Diffuse, mirror and emission include its transmittance and the sheen's;
+  // `specular` does not.
   double passes = 1, coat_lobe = 0, coat_mirror = 0;
   Vec3d coat_normal;
   Material coat;                        // its lobe, set if it has one
@@ -45,6 +50,9 @@ inline const BrdfInfo& glossy_lobe(const ReferenceSurface& s) {
 // The coat's lobe × its cosine, divided by the cosine at the surface.
 Vec3d coat_value(const ReferenceSurface& s, const Vec3d& to_viewer, const Vec3d& to_light);
 
+// The sheen's value.
+Vec3d sheen_value(const ReferenceSurface& s, const Vec3d& to_viewer, const Vec3d& to_light);
+
 // Approximate upper bound of what the lobes reflect; 0: there are none.
 double lobe_weight(const ReferenceSurface& s, const Vec3d& to_viewer);
 
@@ -52,7 +60,7 @@ double lobe_weight(const ReferenceSurface& s, const Vec3d& to_viewer);
 // an environment nor radiosity, which its paths carry, replaces it.
 Vec3d reflected_surroundings(const FrameData& frame, const ReferenceSurface& s, const Vec3d& to_viewer);
 
-// Value of the diffuse plus the glossy lobe under the coat, plus the coat's lobe, 1/sr.
+// Value of the diffuse plus the glossy lobe under coat and sheen, plus the coat's lobe and the sheen, 1/sr.
 Vec3d lobe_value(const ReferenceSurface& s, const Vec3d& to_viewer, const Vec3d& to_light);
 // Density of sample_lobes(), 1/sr; 0 without lobes.
 double lobe_density(const ReferenceSurface& s, const Vec3d& to_viewer, const Vec3d& to_light);

@@ -3,6 +3,7 @@
 #include "base/check.h"
 #include "base/limits.h"
 #include "brdf/clear_coat.h"
+#include "brdf/sheen.h"
 #include "indirect/environment.h"
 #include "scene/channel.h"
 #include "scene/invisible.h"
@@ -12,11 +13,13 @@
 namespace pocketray {
 namespace {
 
-// Returns whether a texture of the material's clear coat has a property.
+// Returns whether a texture of the material's clear coat or sheen has a property.
 template <class Property>
-bool any_of_coat(const Scene& scene, std::uint32_t material, Property property) {
+bool any_of_layers(const Scene& scene, std::uint32_t material, Property property) {
   const ClearCoat* coat = coat_of(scene, material);
-  return coat && (property(coat->strength_texture) || property(coat->roughness_texture) || property(coat->normal));
+  const Sheen* sheen = sheen_of(scene, material);
+  return (coat && (property(coat->strength_texture) || property(coat->roughness_texture) || property(coat->normal))) ||
+         (sheen && (property(sheen->color_texture) || property(sheen->roughness_texture)));
 }
 
 bool reads_levels(const Scene& scene, std::uint32_t material) {
@@ -26,7 +29,7 @@ bool reads_levels(const Scene& scene, std::uint32_t material) {
   const Material& m = scene.materials[material];
   if (has_levels(m.diffuse_texture) || has_levels(m.emission_texture)) return true;
   if (scene.grains.count && has_levels(scene.grains[material].texture)) return true;
-  if (any_of_coat(scene, material, has_levels)) return true;
+  if (any_of_layers(scene, material, has_levels)) return true;
   if (scene.material_maps.empty()) return false;
   const MaterialMaps& maps = scene.material_maps[material];
   return has_levels(maps.metallic_roughness) || has_levels(maps.specular) || has_levels(maps.specular_color) ||
@@ -39,7 +42,7 @@ bool reads_second(const Scene& scene, std::uint32_t material) {
   const Material& m = scene.materials[material];
   if (second(m.diffuse_texture) || second(m.emission_texture)) return true;
   if (scene.grains.count && second(scene.grains[material].texture)) return true;
-  if (any_of_coat(scene, material, second)) return true;
+  if (any_of_layers(scene, material, second)) return true;
   if (scene.material_maps.empty()) return false;
   const MaterialMaps& maps = scene.material_maps[material];
   return second(maps.metallic_roughness) || second(maps.specular) || second(maps.specular_color);
@@ -111,6 +114,9 @@ Census take_census(const Scene& scene, const Settings& settings) {
     const ClearCoat* coat = coat_of(scene, i);
     if (coat && !shows_coat(scene, *coat)) note(&c, Invisible::black_coat, 1), coat = nullptr;
     const bool shines = coat && has_lobe(*coat);
+    const Sheen* sheen = sheen_of(scene, i);
+    if (sheen && !shows_sheen(scene, *sheen)) note(&c, Invisible::black_sheen, 1), sheen = nullptr;
+    c.sheened += sheen != nullptr;
     bool is_bumpy = coat && shows_normal_map(scene, coat->normal, coat->normal_scale);
     bool has_normal_map = coat && coat->normal.texture != kNone, is_occluded = false;
     if (scene.material_maps.count) {
@@ -149,9 +155,9 @@ Census take_census(const Scene& scene, const Settings& settings) {
     c.unlit += m.unlit;
     c.textured += m.diffuse_texture.texture != kNone || m.emission_texture.texture != kNone;
     c.reflecting += reflects_surroundings(m) || shines;
-    c.diffuse += !(m.unlit && shows_unlit) && !is_zero(m.diffuse);
+    c.diffuse += !(m.unlit && shows_unlit) && (!is_zero(m.diffuse) || sheen);
     c.one_sided += !m.double_sided && !transmits;
-    c.scattering += !(m.unlit && shows_unlit) && (!is_zero(m.diffuse) || !is_zero(m.specular) || shines);
+    c.scattering += !(m.unlit && shows_unlit) && (!is_zero(m.diffuse) || !is_zero(m.specular) || shines || sheen);
   }
   count_lights(scene, &c);
   c.has_normals = shows_vertex_normals(scene);

@@ -56,6 +56,8 @@ constexpr EffectRule kRules[] = {
      [](const EffectCall& c) { return by_materials(c, c.census.grained, "have a grain", Invisible::black_grain); }},
     {Effect::clear_coat,
      [](const EffectCall& c) { return by_materials(c, c.census.coated, "have a clear coat", Invisible::black_coat); }},
+    {Effect::sheen,
+     [](const EffectCall& c) { return by_materials(c, c.census.sheened, "have a sheen", Invisible::black_sheen); }},
     {Effect::mip_map, decide_mip_map},
     {Effect::back_face_culling,
      [](const EffectCall& c) { return by_materials(c, c.census.one_sided, "are one-sided"); }},
