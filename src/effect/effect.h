@@ -39,8 +39,9 @@ enum class Effect : std::uint8_t {
   anisotropy,
   second_uv,
   clear_coat,
+  edge_sampling,
 };
-constexpr int kEffectCount = 34;
+constexpr int kEffectCount = 35;
 
 using EffectMask = std::uint64_t;
 constexpr EffectMask bit(Effect effect) { return EffectMask(1) << static_cast<int>(effect); }
