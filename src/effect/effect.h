@@ -40,8 +40,9 @@ enum class Effect : std::uint8_t {
   second_uv,
   clear_coat,
   sheen,
+  edge_sampling,
 };
-constexpr int kEffectCount = 35;
+constexpr int kEffectCount = 36;
 
 using EffectMask = std::uint64_t;
 constexpr EffectMask bit(Effect effect) { return EffectMask(1) << static_cast<int>(effect); }

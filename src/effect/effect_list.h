@@ -9,6 +9,7 @@ namespace pocketray {
 enum class Reads : std::uint8_t {
   own_pixel,
   neighbours,  // and the first hits of the 4 × 4 pixels around it, all of them traced
+  adjacent,    // and the centres of the 3 × 3 pixels around it, all of them traced
   traced,      // whichever nearby pixels are traced: it may be interpolated from these
 };
 
@@ -51,7 +52,8 @@ constexpr EffectRow kEffectList[kEffectCount] = {
     {Effect::spot_light, "spot-light", "a spot light"},
     {Effect::directional_light, "directional-light", "a directional light"},
     {Effect::area_light, "area-light", "an emissive surface"},
-    {Effect::supersampling, "supersampling", "more than one sample per pixel"},
+    {Effect::supersampling, "supersampling", "more than one sample per pixel", Reads::own_pixel, Followed::by_rays,
+     Shared::rows_and_light, 0, "every pixel has several samples"},
     {Effect::animation, "animation", "moving geometry, lights or cameras"},
     {Effect::back_face_culling, "back-face-culling", "a material visible from the front only"},
     {Effect::radiosity, "radiosity", "a stored solution of the light between surfaces", Reads::own_pixel,
@@ -77,6 +79,9 @@ constexpr EffectRow kEffectList[kEffectCount] = {
     {Effect::second_uv, "second-uv", "a material whose textures use two sets of texture coordinates"},
     {Effect::clear_coat, "clear-coat", "a material under a clear coat"},
     {Effect::sheen, "sheen", "a material with a sheen, such as cloth"},
+    {Effect::edge_sampling, "edge-sampling", "--edge-samples above 0", Reads::adjacent, Followed::by_neighbours,
+     Shared::rows, bit(Effect::supersampling) | bit(Effect::selective) | bit(Effect::undersampling),
+     "pixels at edges have more samples"},
 };
 
 // Returns the effects with the value in the column.

@@ -48,6 +48,7 @@ struct Quality {
   Resolution resolution = Resolution::full;
   float light_tolerance = 0.0625f;         // with many lights, fraction that may skip shadow tests; 0: test all
   std::uint32_t environment_shadows = 32;  // directions; a pixel traces shadow rays along 1/16 of them; 0: none
+  std::uint32_t edge_samples = 0;          // added to pixels at edges, if others have one; 0: none
 };
 
 // Frames trace only what may have changed. automatic: where that pays off.

@@ -14,11 +14,11 @@
 #include "shade/ambient_gloss.h"
 #include "shade/branches.h"
 #include "shade/camera.h"
+#include "shade/edges.h"
 #include "shade/filters.h"
 #include "shade/footprint.h"
 #include "shade/instances.h"
 #include "shade/interleaved.h"
-#include "shade/lattice.h"
 #include "shade/material_maps.h"
 #include "shade/media.h"
 #include "shade/selective.h"
@@ -65,10 +65,11 @@ void choose_kernels(Renderer* renderer) {
   renderer->frame.kernels.trace_strip = is_interleaved(renderer->effects.mask)           ? trace_interleaved
                                         : has(renderer->effects.mask, Effect::selective) ? trace_selectively
                                                                                          : nullptr;
-  renderer->frame.kernels.trace_lattice_strip = nullptr;
-  if (has(renderer->effects.mask, Effect::undersampling)) {
-    renderer->frame.kernels.trace_lattice_strip = renderer->frame.kernels.trace_strip;
-    renderer->frame.kernels.trace_strip = trace_lattice;
+  renderer->frame.kernels.trace_window_strip = nullptr;
+  const bool has_edges = has(renderer->effects.mask, Effect::edge_sampling);
+  if (has_edges || has(renderer->effects.mask, Effect::undersampling)) {
+    renderer->frame.kernels.trace_window_strip = renderer->frame.kernels.trace_strip;
+    renderer->frame.kernels.trace_strip = has_edges ? trace_edges : trace_lattice;
   }
   renderer->frame.kernels.radiance = find_radiance_function(renderer->effects.mask);
   renderer->frame.kernels.find_shadows = !has(renderer->effects.mask, Effect::shadow)            ? nullptr
@@ -128,9 +129,15 @@ void make_tracers(Renderer* renderer) {
   const std::uint32_t pixels = window_pixel_count(renderer->settings);
   for (std::uint32_t i = 0; i < renderer->tracers.count; ++i) {
     renderer->tracers[i] = make_tracer(renderer->frame);
-    if (has(renderer->effects.mask, Effect::undersampling))
-      keep_window({&renderer->scratch.window_pixels[i * pixels], pixels},
-                  {&renderer->scratch.window_states[i * pixels], pixels}, &renderer->tracers[i]);
+    if (has(renderer->effects.mask, Effect::undersampling) || has(renderer->effects.mask, Effect::edge_sampling)) {
+      const ThreadScratch& scratch = renderer->scratch;
+      PixelWindow window;
+      window.pixels = {&scratch.window_pixels[i * pixels], pixels};
+      window.states = {&scratch.window_states[i * pixels], pixels};
+      if (keeps_shared_pixels(renderer->settings, renderer->effects.mask))
+        window.shared = {&scratch.shared_pixels[i * pixels], pixels};
+      keep_window(window, &renderer->tracers[i]);
+    }
     if (is_interleaved(renderer->effects.mask) && renderer->scratch.interleaved_pixels.count) {
       const std::uint32_t count = kept_pixel_count(renderer->settings);
       keep_interleaved_pixels({&renderer->scratch.interleaved_pixels[i * count], count}, &renderer->tracers[i]);

@@ -171,7 +171,7 @@ const char* mapped_light_unfit(const Renderer& renderer) {
 }
 
 std::size_t first_hit_count(const Settings& settings) {
-  return std::size_t(settings.width) * settings.height * settings.samples_per_pixel;
+  return std::size_t(settings.width) * settings.height * (settings.samples_per_pixel + settings.edge_samples);
 }
 
 void take_mapped_surfaces(Renderer* renderer, const Hit* first_hits, std::uint32_t traced_end, const LightGrid& grid,

@@ -18,8 +18,8 @@
 #include "plan/plan_scene.h"
 #include "plan/radiance_bounds.h"
 #include "shade/camera.h"
+#include "shade/edges.h"
 #include "shade/interleaved.h"
-#include "shade/lattice.h"
 #include "shade/point_groups.h"
 #include "shade/selective.h"
 #include "shade/source_selection.h"
@@ -219,10 +219,12 @@ Status build_renderer_unexposed(Renderer* renderer) {
   if (is_interleaved(renderer->effects.mask))
     renderer->scratch.interleaved_pixels = arena_array<InterleavedPixel>(
         &renderer->memory.persistent, renderer->settings.threads * kept_pixel_count(renderer->settings));
-  if (plans_lattice(renderer->settings)) {
+  if (plans_window(renderer->settings)) {
     const std::uint32_t count = renderer->settings.threads * window_pixel_count(renderer->settings);
     renderer->scratch.window_pixels = arena_array<Vec3>(&renderer->memory.persistent, count);
     renderer->scratch.window_states = arena_array<std::uint8_t>(&renderer->memory.persistent, count);
+    if (keeps_shared_pixels(renderer->settings, renderer->effects.mask))
+      renderer->scratch.shared_pixels = arena_array<SharedPixel>(&renderer->memory.persistent, count);
   }
   renderer->spans = arena_array<Span>(&renderer->memory.persistent, renderer->settings.height);
   renderer->row_ns = arena_array_zeroed<std::uint64_t>(&renderer->memory.persistent, renderer->settings.height);
@@ -310,6 +312,7 @@ bool probe_exposure(Renderer* renderer, ExposureProbe* p, std::uint32_t pixel_co
   FrameData frame = renderer->frame;
   frame.kept.first_hits = nullptr;
   if (frame.mask & kInterpolatingEffects) frame.kernels.trace_strip = nullptr;
+  if (has(frame.mask, Effect::edge_sampling)) frame.kernels.trace_strip = frame.kernels.trace_window_strip;
   Tracer tracer = make_tracer(frame);
   tracer.light_entries = renderer->tracers[0].light_entries;
   for (; p->next < count && p->next - begin < pixel_count_max; ++p->next) {

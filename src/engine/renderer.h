@@ -78,8 +78,9 @@ struct RendererView {
 struct ThreadScratch {
   Array<CellCorner> corners;                   // for selective rendering, two rows per thread
   Array<InterleavedPixel> interleaved_pixels;  // kept_pixel_count() of them per thread
-  Array<Vec3> window_pixels;                   // for undersampling, one window per thread
+  Array<Vec3> window_pixels;                   // for undersampling or samples at edges, one window per thread
   Array<std::uint8_t> window_states;
+  Array<SharedPixel> shared_pixels;
   Array<LightEntry> light_entries;  // search_entry_count() of them per thread
 };
 

@@ -6,8 +6,8 @@
 #include "plan/place_light_polygons.h"
 #include "plan/plan_effects.h"
 #include "plan/plan_lights.h"
+#include "shade/edges.h"
 #include "shade/interleaved.h"
-#include "shade/lattice.h"
 #include "shade/point_groups.h"
 #include "shade/selective.h"
 #include "shade/source_selection.h"
@@ -52,8 +52,8 @@ constexpr MemoryRow kRows[] = {
     {"neighbouring pixels", 0,
      [](const Scene&, const In& in) { return has(in.mask, Effect::selective) ? selective_need(in.settings) : 0; }},
     {"neighbouring pixels", 0, interleaved_need},
-    {"neighbouring pixels", bit(Effect::undersampling),
-     [](const Scene&, const In& in) { return lattice_need(in.settings); }},
+    {"neighbouring pixels", bit(Effect::undersampling) | bit(Effect::edge_sampling),
+     [](const Scene&, const In& in) { return window_need(in.settings, in.mask); }},
 };
 
 Status find_need(const Scene& scene, const Settings& settings, EffectMask mask, PlannedFor* in) {

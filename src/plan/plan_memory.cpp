@@ -51,7 +51,8 @@ CoherencePlan coherence_plan(const Settings& settings, std::uint32_t light_point
                              std::uint32_t recolorable) {
   CoherencePlan plan;
   plan.width = settings.width, plan.height = settings.height;
-  plan.samples = settings.samples_per_pixel, plan.threads = settings.threads, plan.light_points = light_point_count;
+  plan.samples = settings.samples_per_pixel + settings.edge_samples, plan.threads = settings.threads,
+  plan.light_points = light_point_count;
   plan.area_lights = area_light_count, plan.recolorable = recolorable;
   plan.compensated = settings.compensation == Compensation::rays;
   plan.table_side = settings.coherence_table, plan.tables_only = settings.coherence_by_tables;

@@ -5,6 +5,7 @@
 #include "base/check.h"
 #include "shade/even_points.h"
 #include "shade/pixel.h"
+#include "shade/shared_pixels.h"
 #include "shade/tile.h"
 #include "shade/tile_shadows.h"
 
@@ -16,14 +17,6 @@ namespace {
 constexpr float kSameNormal = 0.9f, kSamePlane = 0.15f;
 // Fewer pixels cover too few sources to represent all.
 constexpr std::uint32_t kSharersMin = 4;
-
-bool shows_same(const InterleavedPixel& a, const InterleavedPixel& b) {
-  if (a.triangle == b.triangle) return true;
-  if (!(dot(a.normal, b.normal) > kSameNormal)) return false;
-  Vec3 way = b.point - a.point;
-  float height = dot(a.geometric, way);
-  return height * height <= kSamePlane * kSamePlane * dot(way, way);
-}
 
 // A region is an aligned tile with a border of the pixels from which its pixels take light, by rows.
 constexpr std::uint32_t kRegionSide = kTakenBefore + kTileSide + kTakenAfter;
@@ -217,29 +210,56 @@ InterleavedLight sum_of_all(std::uint32_t step, std::uint32_t own, bool with_ope
   return sum;
 }
 
+// Keeps a pixel's surface, unless it reflects nothing, for keep_sum().
+void keep_surfaces(Tracer* tracer, const SharedTile& tile, const Region& region, const FirstHits& first) {
+  if (tracer->window.shared.empty()) return;
+  const PixelList& wanted = tile.lists->wanted;
+  for (std::uint32_t i = 0; i < wanted.count; ++i) {
+    const std::uint32_t column = wanted.column[i], row = wanted.row[i];
+    SharedPixel* shared = shared_pixel(tracer, tile.column + column - kTakenBefore, tile.row + row - kTakenBefore);
+    shared->pixel = region.pixel[row * kRegionSide + column];
+    if (is_hit(shared->pixel) && is_zero(first.shadows.surface[i].diffuse)) shared->pixel.triangle = kNone;
+  }
+}
+
+// Keeps the light that pixel `i` of the wanted ones takes from its neighbours.
+void keep_sum(Tracer* tracer, const SharedTile& tile, std::uint32_t i, int source, const InterleavedLight& sum,
+              bool are_few) {
+  const PixelList& wanted = tile.lists->wanted;
+  SharedPixel* shared =
+      shared_pixel(tracer, tile.column + wanted.column[i] - kTakenBefore, tile.row + wanted.row[i] - kTakenBefore);
+  if (shared) shared->pixel.light[source] = sum, shared->are_few[source] = are_few;
+}
+
 // Fast path of add_shared_light() for a region that shows a single surface.
-void add_light_of_one_surface(const FrameData& frame, const PixelList& wanted, int source, Region* region,
-                              FirstHits* first) {
+void add_light_of_one_surface(Tracer* tracer, const SharedTile& tile, int source, Region* region, FirstHits* first) {
   CHECK(region->is_one_surface);
+  const FrameData& frame = *tracer->frame;
+  const PixelList& wanted = tile.lists->wanted;
   const InterleavedSource& info = *kInterleavedSources[source];
+  const bool with_open = info.reads_open || tracer->window.shared.count > 0;
   for (std::uint32_t k = kTakenBefore * kRegionSide; k < (kTakenBefore + kTileSide) * kRegionSide; ++k)
     region->column[k] =
-        sum_of_all(kRegionSide, k, info.reads_open, [&](std::uint32_t at) { return region->pixel[at].light[source]; });
+        sum_of_all(kRegionSide, k, with_open, [&](std::uint32_t at) { return region->pixel[at].light[source]; });
   for (std::uint32_t i = 0; i < wanted.count; ++i) {
     Surface& s = first->shadows.surface[i];
     if (is_zero(s.diffuse)) continue;
-    const InterleavedLight sum = sum_of_all(1, wanted.row[i] * kRegionSide + wanted.column[i], info.reads_open,
+    const InterleavedLight sum = sum_of_all(1, wanted.row[i] * kRegionSide + wanted.column[i], with_open,
                                             [&](std::uint32_t at) { return region->column[at]; });
+    keep_sum(tracer, tile, i, source, sum, false);
     s.glow += s.diffuse * info.irradiance(frame, s.point, s.normal, sum, false);
   }
 }
 
 // Adds the light that the wanted pixels share with their neighbours to their surfaces' glow.
-void add_shared_light(const FrameData& frame, const PixelList& wanted, Region* region, FirstHits* first) {
+void add_shared_light(Tracer* tracer, const SharedTile& tile, Region* region, FirstHits* first) {
+  const FrameData& frame = *tracer->frame;
+  const PixelList& wanted = tile.lists->wanted;
+  keep_surfaces(tracer, tile, *region, *first);
   for (int source = 0; source < kInterleavedSourceCount; ++source) {
     if (!has(frame.mask, kInterleavedSources[source]->effect)) continue;
     if (region->is_one_surface) {
-      add_light_of_one_surface(frame, wanted, source, region, first);
+      add_light_of_one_surface(tracer, tile, source, region, first);
       continue;
     }
     std::fill_n(region->column, kRegionPixels, kNoLight);
@@ -264,6 +284,7 @@ void add_shared_light(const FrameData& frame, const PixelList& wanted, Region* r
           if (is_hit(pixel)) add(pixel.light[source], &sum);
         }
       }
+      keep_sum(tracer, tile, i, source, sum, are_few);
       s.glow += s.diffuse * kInterleavedSources[source]->irradiance(frame, s.point, s.normal, sum, are_few);
     }
   }
@@ -289,7 +310,7 @@ void trace_sample(Tracer* tracer, const SharedTile& tile, std::uint32_t sample, 
   find_first_hits(tracer, tile, wanted, 0, wanted.count, offset, true, &first);
   gather(tracer, tile, sample, wanted, 0, wanted.count, first, region);
   link_neighbours(region);
-  add_shared_light(frame, wanted, region, &first);
+  add_shared_light(tracer, tile, region, &first);
   tracer->tile_shadows = first.knows_shadows ? &first.shadows : nullptr;
   for (std::uint32_t i = 0; i < wanted.count; ++i) {
     Surface* s = &first.shadows.surface[i];
@@ -374,6 +395,14 @@ void trace_tile_row(Tracer* tracer, const AlignedTiles& tiles, std::uint32_t r, 
 }
 
 }  // namespace
+
+bool shows_same(const InterleavedPixel& a, const InterleavedPixel& b) {
+  if (a.triangle == b.triangle) return true;
+  if (!(dot(a.normal, b.normal) > kSameNormal)) return false;
+  Vec3 way = b.point - a.point;
+  float height = dot(a.geometric, way);
+  return height * height <= kSamePlane * kSamePlane * dot(way, way);
+}
 
 void keep_interleaved_pixels(Array<InterleavedPixel> pixels, Tracer* tracer) {
   CHECK_LE(kept_pixel_count(tracer->frame->settings), pixels.count);

@@ -79,6 +79,9 @@ extern const InterleavedSource kVirtualLightSource, kEnvironmentSource;
 constexpr const InterleavedSource* kInterleavedSources[kInterleavedSourceCount] = {&kVirtualLightSource,
                                                                                    &kEnvironmentSource};
 
+// Returns whether two pixels, both of which hit something, show one surface.
+bool shows_same(const InterleavedPixel& a, const InterleavedPixel& b);
+
 // Traces the strip's pixels.
 void trace_interleaved(Tracer* tracer, const TileStrip& strip, const PixelRows& image);
 

@@ -49,7 +49,7 @@ struct Kernels {
   LaterLightFunction add_later_light = nullptr;  // null: tiles add no light
   ShadowsFunction find_shadows = nullptr;        // null if nothing casts a shadow
   StripFunction trace_strip = nullptr;           // traces pixels in blocks; null: pixel by pixel
-  StripFunction trace_lattice_strip = nullptr;   // for the pixels that undersampling traces
+  StripFunction trace_window_strip = nullptr;    // for the pixels of a window, see window.h
 };
 
 }  // namespace pocketray

@@ -5,49 +5,15 @@
 
 #include "base/check.h"
 #include "effect/effect_probe.h"
-#include "shade/tile.h"
+#include "shade/window.h"
 
 namespace pocketray {
 namespace {
 
-// State of a pixel in the window; reconstructed pixels are never wanted.
-enum State : std::uint8_t { kUnknown, kWanted, kKnown };
-
-// A tracer's window, from which a row of tiles is built, and the columns in use.
-struct OpenWindow {
-  Tracer* tracer;
-  PixelRows rows;
-  std::uint8_t* states;
-  std::uint32_t column_begin, column_end;
-
-  const Settings& settings() const { return tracer->frame->settings; }
-  std::uint8_t& state(std::uint32_t column, std::uint32_t row) const {
-    return states[static_cast<std::size_t>(row - rows.first_row) * rows.width + column];
-  }
-  // A picture with one row or column has no pairs of neighbours, so all of it is traced.
-  bool is_traced(std::uint32_t column, std::uint32_t row) const {
-    return on_lattice(settings().resolution, column, row) || settings().width < 2 || settings().height < 2;
-  }
-};
-
-// Opens the tracer's window around the tiles from `row` on. Rows shared with the previous window stay known.
-OpenWindow open_window(Tracer* tracer, std::uint32_t row) {
-  LatticeWindow& kept = tracer->window;
-  CHECK_EQ(row % kTileSide, 0u);
-  const std::uint32_t width = tracer->frame->settings.width;
-  CHECK_GE(kept.pixels.count, kWindowRows * width);
-  CHECK_EQ(kept.pixels.count, kept.states.count);
-  if (kept.row != row) {
-    std::uint32_t known = 0;
-    if (kept.row + kTileSide == row) {
-      known = kWindowRows - kTileSide;
-      std::copy_n(kept.pixels.data + kTileSide * width, known * width, kept.pixels.data);
-      std::copy_n(kept.states.data + kTileSide * width, known * width, kept.states.data);
-    }
-    std::fill(kept.states.data + known * width, kept.states.data + kWindowRows * width, kUnknown);
-    kept.row = row;
-  }
-  return {tracer, {kept.pixels.data, width, row - kRowsAbove}, kept.states.data, width, 0};
+// A picture with one row or column has no pairs of neighbours, so all of it is traced.
+bool is_traced(const OpenWindow& window, std::uint32_t column, std::uint32_t row) {
+  const Settings& settings = window.settings();
+  return on_lattice(settings.resolution, column, row) || settings.width < 2 || settings.height < 2;
 }
 
 // Index of a pixel's neighbour, mirrored at the picture's edges.
@@ -71,17 +37,11 @@ Neighbours neighbours_of(const Settings& settings, std::uint32_t column, std::ui
   return n;
 }
 
-void want_columns(OpenWindow* window, std::uint32_t begin, std::uint32_t end) {
-  CHECK(begin < end && end <= window->rows.width);
-  window->column_begin = std::min(window->column_begin, begin);
-  window->column_end = std::max(window->column_end, end);
-}
-
 // Marks the traced pixels on which a pixel depends.
 void want(OpenWindow* window, std::uint32_t column, std::uint32_t row) {
   std::uint8_t& state = window->state(column, row);
   if (state != kUnknown) return;
-  if (window->is_traced(column, row)) {
+  if (is_traced(*window, column, row)) {
     state = kWanted;
     return want_columns(window, column, column + 1);
   }
@@ -98,73 +58,8 @@ void want_tile(OpenWindow* window, std::uint32_t column, std::uint32_t row) {
   const std::uint32_t row_end = std::min(row + kTileSide + 1, settings.height);
   for (std::uint32_t y = row - std::min(row, reach); y < row_end; ++y)
     for (std::uint32_t x = begin; x < end; ++x)
-      if (window->is_traced(x, y) && window->state(x, y) == kUnknown) window->state(x, y) = kWanted;
+      if (is_traced(*window, x, y) && window->state(x, y) == kUnknown) window->state(x, y) = kWanted;
   want_columns(window, begin, end);
-}
-
-void trace_pixels(const OpenWindow& window, Tile* tile) {
-  Tracer* tracer = window.tracer;
-  const FrameData& frame = *tracer->frame;
-  CHECK_LE(tile->count, kPacketMax);
-  if (tile->count >= kPacketRaysMin && !frame.geometry.ray_by_ray && !frame.view.camera.orthographic) {
-    trace_tile(tracer, *tile, window.rows);
-  } else {
-    for (std::uint32_t i = 0; i < tile->count; ++i)
-      window.rows.at(tile->column[i], tile->row[i]) = pixel_radiance(tracer, tile->column[i], tile->row[i]);
-  }
-  tile->count = 0;
-}
-
-// Calls visit(column, row) for the lattice's wanted pixels in the range, and marks them as known.
-template <typename Visit>
-void take_wanted(const OpenWindow& window, std::uint32_t column_begin, std::uint32_t column_end,
-                 std::uint32_t row_begin, std::uint32_t row_end, Visit visit) {
-  for (std::uint32_t row = row_begin; row < row_end; ++row)
-    for (std::uint32_t column = column_begin; column < column_end; ++column) {
-      std::uint8_t& state = window.state(column, row);
-      if (state != kWanted || !window.is_traced(column, row)) continue;
-      state = kKnown;
-      visit(column, row);
-    }
-}
-
-// Rows of the picture in the window.
-std::uint32_t window_begin(const OpenWindow& window) {
-  return window.tracer->window.row - std::min(window.tracer->window.row, kRowsAbove);
-}
-std::uint32_t window_end(const OpenWindow& window) {
-  return std::min(window.rows.first_row + kWindowRows, window.settings().height);
-}
-
-// Traces in packets of neighbours.
-void trace_wanted(const OpenWindow& window) {
-  Tile tile;
-  for (std::uint32_t column = window.column_begin; column < window.column_end; column += kTileSide)
-    take_wanted(window, column, std::min(column + kTileSide, window.column_end), window_begin(window),
-                window_end(window), [&](std::uint32_t x, std::uint32_t y) {
-                  add_pixel(x, y, &tile);
-                  if (tile.count == kPacketMax) trace_pixels(window, &tile);
-                });
-  trace_pixels(window, &tile);
-}
-
-// Traces with the frame's strip function, a row of tiles at a time.
-void trace_wanted_strips(const OpenWindow& window) {
-  CHECK(window.tracer->frame->kernels.trace_lattice_strip != nullptr);
-  const std::uint32_t end = window_end(window), left = window.column_begin / kTileSide * kTileSide;
-  for (std::uint32_t row = window_begin(window), next; row < end; row = next) {
-    next = std::min((row / kTileSide + 1) * kTileSide, end);
-    TileStrip strip;
-    strip.row = row / kTileSide * kTileSide, strip.column = left, strip.row_count = kTileSide;
-    strip.tile_count = (window.column_end - left + kTileSide - 1) / kTileSide;
-    std::fill_n(strip.mask, strip.tile_count, 0);
-    bool any = false;
-    take_wanted(window, window.column_begin, window.column_end, row, next, [&](std::uint32_t x, std::uint32_t y) {
-      strip.mask[(x - left) / kTileSide] |= std::uint64_t(1) << morton_place(x % kTileSide, y % kTileSide);
-      any = true;
-    });
-    if (any) window.tracer->frame->kernels.trace_lattice_strip(window.tracer, strip, window.rows);
-  }
 }
 
 float difference(const Vec3& a, const Vec3& b) {
@@ -182,7 +77,7 @@ const Vec3& reconstructed(const OpenWindow& window, std::uint32_t column, std::u
   Vec3& pixel = window.rows.at(column, row);
   std::uint8_t& state = window.state(column, row);
   if (state == kKnown) return pixel;
-  CHECK(!window.is_traced(column, row));
+  CHECK(!is_traced(window, column, row));
   const Neighbours n = neighbours_of(window.settings(), column, row);
   const Vec3* value[4];
   for (int i = 0; i < 4; ++i) value[i] = &reconstructed(window, n.column[i], n.row[i]);
@@ -239,13 +134,6 @@ void reconstruct(const OpenWindow& window, std::uint32_t left, std::uint32_t top
 
 }  // namespace
 
-void keep_window(Array<Vec3> pixels, Array<std::uint8_t> states, Tracer* tracer) {
-  CHECK(tracer->frame != nullptr);
-  CHECK_GE(pixels.count, window_pixel_count(tracer->frame->settings));
-  CHECK_EQ(pixels.count, states.count);
-  tracer->window = {pixels, states, ~0u};
-}
-
 void trace_lattice(Tracer* tracer, const TileStrip& strip, const PixelRows& image) {
   effect_entered<Effect::undersampling>();
   if (strip.tile_count == 0) return;
@@ -265,8 +153,7 @@ void trace_lattice(Tracer* tracer, const TileStrip& strip, const PixelRows& imag
       for_each_pixel(left, top, tiles.mask[r][c],
                      [&](std::uint32_t column, std::uint32_t row) { want(&window, column, row); });
     }
-    if (window.column_begin < window.column_end)
-      tracer->frame->kernels.trace_lattice_strip ? trace_wanted_strips(window) : trace_wanted(window);
+    trace_wanted(window);
     for (std::uint32_t c = 0; c < tiles.tile_count; ++c)
       reconstruct(window, tiles.column + c * kTileSide, tiles.row + r * kTileSide, tiles.mask[r][c], image);
   }

@@ -11,10 +11,6 @@
 
 namespace pocketray {
 
-// Rows around a row of tiles on which its pixels depend.
-constexpr std::uint32_t kRowsAbove = 2, kRowsBelow = 1;
-constexpr std::uint32_t kWindowRows = kRowsAbove + kTileSide + kRowsBelow;
-
 constexpr bool on_lattice(Resolution resolution, std::uint32_t column, std::uint32_t row) {
   switch (resolution) {
     case Resolution::full:
@@ -27,19 +23,11 @@ constexpr bool on_lattice(Resolution resolution, std::uint32_t column, std::uint
   return (column + row) % 2 == 0;
 }
 
-constexpr std::uint32_t window_pixel_count(const Settings& settings) { return kWindowRows * settings.width; }
 // True if memory is planned for undersampling, even if it is off at first.
 constexpr bool plans_lattice(const Settings& settings) {
   const EffectMask effect = bit(Effect::undersampling);
   return (settings.resolution != Resolution::full || (settings.forced_on & effect)) && !(settings.forced_off & effect);
 }
-inline std::size_t lattice_need(const Settings& settings) {
-  if (!plans_lattice(settings)) return 0;
-  const std::size_t count = std::size_t(settings.threads) * window_pixel_count(settings);
-  return arena_need<Vec3>(count) + arena_need<std::uint8_t>(count);
-}
-// Gives a tracer its window; both arrays have window_pixel_count() elements.
-void keep_window(Array<Vec3> pixels, Array<std::uint8_t> states, Tracer* tracer);
 
 // Traces or reconstructs the strip's pixels.
 void trace_lattice(Tracer* tracer, const TileStrip& strip, const PixelRows& image);

@@ -22,7 +22,7 @@ constexpr std::uint32_t kPacketRaysMin = kPacketMax / 4;
 // Reports a pixel to a RayObserver.
 void observe_pixel(Tracer* tracer, std::uint32_t column, std::uint32_t row);
 
-// Stores a hit in KeptRays::first_hits, which must exist, or what the window needs of it.
+// Stores a hit in KeptRays::first_hits, which must exist.
 void keep_first_hit(Tracer* tracer, std::uint32_t sample, std::uint32_t column, std::uint32_t row, const Hit& hit);
 
 // Mean of the pixel's samples. `first`, unless null, receives the surface at the first sample's first hit; its material

@@ -73,13 +73,13 @@ void trace_strip(Tracer* tracer, const TileStrip& strip, std::uint32_t pitch, co
 }
 
 // Traces pixels of a coarse grid in blocks, each pixel with its own block.
-void trace_blocks(Tracer* tracer, const Span& span, std::uint32_t pitch, const PixelRows& image) {
+void trace_blocks(Tracer* tracer, StripFunction trace, const Span& span, std::uint32_t pitch, const PixelRows& image) {
   const auto row = static_cast<std::uint16_t>(span.row * pitch);
   for (std::uint32_t x = span.column_begin * pitch; x < span.column_end * pitch; x += pitch) {
     const Span pixel = {row, static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(x + 1)};
     TileStrip strip;
     make_strip(&pixel, 1, &strip);
-    tracer->frame->kernels.trace_strip(tracer, strip, image);
+    trace(tracer, strip, image);
   }
 }
 
@@ -123,11 +123,14 @@ void trace_spans(Tracer* tracer, const Span* spans, std::uint32_t span_count, Ao
   const PixelRows rows = {image, frame.settings.width, 0};
   const std::uint32_t sample_count = frame.settings.samples_per_pixel;
   CHECK(sample_count >= 1 && sample_count <= kSampleCountMax);
-  if (aov == Aov::none && frame.kernels.trace_strip && pitch > 1) {
-    for (std::uint32_t i = 0; i < span_count; ++i) trace_blocks(tracer, spans[i], pitch, rows);
+  // A grid coarser than the picture is a preview, in which nothing adjoins a pixel's edges.
+  const StripFunction trace = has(frame.mask, Effect::edge_sampling) && pitch > 1 ? frame.kernels.trace_window_strip
+                                                                                  : frame.kernels.trace_strip;
+  if (aov == Aov::none && trace && pitch > 1) {
+    for (std::uint32_t i = 0; i < span_count; ++i) trace_blocks(tracer, trace, spans[i], pitch, rows);
     return;
   }
-  if (aov != Aov::none || (frame.view.camera.orthographic && !frame.kernels.trace_strip)) {
+  if (aov != Aov::none || (frame.view.camera.orthographic && !trace)) {
     for (std::uint32_t i = 0; i < span_count; ++i) trace_span(tracer, spans[i], pitch, aov, rows);
     return;
   }
@@ -136,8 +139,7 @@ void trace_spans(Tracer* tracer, const Span* spans, std::uint32_t span_count, Ao
     count = strip_span_count(spans + i, span_count - i);
     CHECK_GT(count, 0u);
     make_strip(spans + i, count, &strip);
-    frame.kernels.trace_strip ? frame.kernels.trace_strip(tracer, strip, rows)
-                              : trace_strip(tracer, strip, pitch, rows);
+    trace ? trace(tracer, strip, rows) : trace_strip(tracer, strip, pitch, rows);
   }
 }
 

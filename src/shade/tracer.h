@@ -20,11 +20,15 @@ struct CornerRow {
   std::uint32_t row = ~0u;  // row in the picture; ~0: none
 };
 
-// Pixels of kWindowRows rows with their states; lattice.h.
-struct LatticeWindow {
+// Light that a pixel shares with its neighbours (interleaved.h), as samples at edges take it.
+struct SharedPixel;
+
+// Pixels of kWindowRows rows with their states; window.h.
+struct PixelWindow {
   Array<Vec3> pixels;
   Array<std::uint8_t> states;
-  std::uint32_t row = ~0u;  // first row of the row of tiles that it surrounds; ~0: none
+  Array<SharedPixel> shared;  // like pixels; empty: none is kept
+  std::uint32_t row = ~0u;    // first row of the row of tiles that it surrounds; ~0: none
 };
 
 // A light or a group of lights in a search of source selection; the other index is kNone.
@@ -72,7 +76,7 @@ struct alignas(64) Tracer {
   CornerRow corner_rows[4];                    // kept by selective rendering
   std::uint32_t corner_row_count = 0;          // rows in use: 0, 2 or 4
   Array<InterleavedPixel> interleaved_pixels;  // from the row of tiles above; empty: not planned
-  LatticeWindow window;                        // empty: not planned
+  PixelWindow window;                          // empty: not planned
   Array<LightEntry> light_entries;             // scratch of source selection; empty: not planned
   float left_out_max = 0;                      // largest total error of a sample so far
   float left_out_share_max = 0;                // the same error relative to what was allowed

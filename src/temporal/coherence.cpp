@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "base/check.h"
+#include "shade/edges.h"
 #include "shade/interleaved.h"
 #include "temporal/tile_search.h"
 
@@ -32,6 +33,9 @@ bool same_virtual_lights(const VirtualLights& a, const VirtualLights& b) {
          });
 }
 
+// Returns whether pixels depend on others around them.
+bool reads_others(EffectMask mask) { return is_interleaved(mask) || has(mask, Effect::edge_sampling); }
+
 std::uint32_t tiles_along(std::uint32_t pixels) { return (pixels + kChangeTileSide - 1) / kChangeTileSide; }
 
 bool keeps_paths(EffectMask mask, const CoherencePlan& plan) {
@@ -52,7 +56,7 @@ std::size_t coherence_need(const Scene& scene, EffectMask mask, const CoherenceP
   std::size_t bytes = moving_geometry_need(scene, mask);
   bytes = size_sum(bytes, arena_need(pixels * plan.samples * sizeof(Hit)));
   bytes = size_sum(bytes, arena_need<TileHits>(tiles) + arena_need<std::uint64_t>(tiles));
-  if (is_interleaved(mask)) bytes = size_sum(bytes, arena_need<std::uint64_t>(tiles));
+  if (reads_others(mask)) bytes = size_sum(bytes, arena_need<std::uint64_t>(tiles));
   if (has(mask, Effect::instant_radiosity)) bytes = size_sum(bytes, arena_need<VirtualLights>(1));
   if (keeps_paths(mask, plan))
     bytes = size_sum(bytes, size_sum(arena_need(pixels * plan.samples * sizeof(KeptPath)), arena_need<Box>(tiles)));
@@ -81,7 +85,7 @@ void make_coherence(const FrameData& frame, const CoherencePlan& plan, Arena* ke
   c->first_hits = arena_array_zeroed<Hit>(keep, static_cast<std::size_t>(pixel_count(plan)) * plan.samples);
   c->tiles = arena_array<TileHits>(keep, tiles);
   c->changed = arena_array_zeroed<std::uint64_t>(keep, tiles);
-  if (is_interleaved(frame.mask)) c->given = arena_array_zeroed<std::uint64_t>(keep, tiles);
+  if (reads_others(frame.mask)) c->given = arena_array_zeroed<std::uint64_t>(keep, tiles);
   if (has(frame.mask, Effect::instant_radiosity)) c->virtual_lights = arena_array<VirtualLights>(keep, 1);
   if (keeps_paths(frame.mask, plan)) {
     c->paths = arena_array<KeptPath>(keep, static_cast<std::size_t>(pixel_count(plan)) * plan.samples);
@@ -102,9 +106,9 @@ void make_coherence(const FrameData& frame, const CoherencePlan& plan, Arena* ke
 
 bool fits(const Coherence& c, const FrameData& frame) {
   bool has_tables = c.tables.words.count > 0;
-  return frame.settings.samples_per_pixel <= c.plan.samples && frame.lights.points.count <= c.plan.light_points &&
-         frame.lights.polygons.count <= c.plan.area_lights && (has_tables || !keeps_tables(frame.mask, c.plan)) &&
-         (c.given.count > 0 || !is_interleaved(frame.mask)) &&
+  return kept_sample_count(frame.settings, frame.mask) <= c.plan.samples &&
+         frame.lights.points.count <= c.plan.light_points && frame.lights.polygons.count <= c.plan.area_lights &&
+         (has_tables || !keeps_tables(frame.mask, c.plan)) && (c.given.count > 0 || !reads_others(frame.mask)) &&
          (c.virtual_lights.count > 0 || !has(frame.mask, Effect::instant_radiosity)) &&
          (c.paths.count > 0 || !is_compensated(frame.settings, frame.mask));
 }
@@ -229,21 +233,34 @@ void find_changes(Coherence* c, std::uint32_t tile_row, std::uint32_t thread, Tr
   }
 }
 
+namespace {
+
+// Adds the pixels from `before` columns and rows before pixel `i` of a tile to `after` columns and rows after it.
+void add_around(Coherence* c, std::uint32_t tile, std::uint32_t i, std::uint32_t before, std::uint32_t after) {
+  const std::uint32_t column = tile % c->tile_columns * kChangeTileSide + i % kChangeTileSide,
+                      row = tile / c->tile_columns * kChangeTileSide + i / kChangeTileSide;
+  for (std::uint32_t y = row - std::min(row, before); y <= row + after && y < c->plan.height; ++y)
+    for (std::uint32_t x = column - std::min(column, before); x <= column + after && x < c->plan.width; ++x)
+      c->changed[y / kChangeTileSide * c->tile_columns + x / kChangeTileSide] |=
+          std::uint64_t(1) << (y % kChangeTileSide * kChangeTileSide + x % kChangeTileSide);
+}
+
+// add_around() for all pixels that may give others something different.
+void add_around_given(Coherence* c, std::uint32_t before, std::uint32_t after) {
+  for (std::uint32_t tile = 0; tile < c->given.count; ++tile)
+    for (std::uint64_t rest = c->given[tile]; rest; rest &= rest - 1)
+      add_around(c, tile, static_cast<std::uint32_t>(__builtin_ctzll(rest)), before, after);
+}
+
+}  // namespace
+
 void spread_changes(Coherence* c) {
-  if (c->given.empty() || !is_interleaved(c->search.frame->mask)) return;
-  for (std::uint32_t tile = 0; tile < c->given.count; ++tile) {
-    const std::uint32_t left = tile % c->tile_columns * kChangeTileSide, top = tile / c->tile_columns * kChangeTileSide;
-    for (std::uint64_t rest = c->given[tile]; rest; rest &= rest - 1) {
-      const auto i = static_cast<std::uint32_t>(__builtin_ctzll(rest));
-      // The pixels that take light from this one.
-      const std::uint32_t column = left + i % kChangeTileSide, row = top + i / kChangeTileSide;
-      for (std::uint32_t y = row - std::min(row, kTakenAfter); y <= row + kTakenBefore && y < c->plan.height; ++y)
-        for (std::uint32_t x = column - std::min(column, kTakenAfter); x <= column + kTakenBefore && x < c->plan.width;
-             ++x)
-          c->changed[y / kChangeTileSide * c->tile_columns + x / kChangeTileSide] |=
-              std::uint64_t(1) << (y % kChangeTileSide * kChangeTileSide + x % kChangeTileSide);
-    }
-  }
+  const EffectMask mask = c->search.frame->mask;
+  if (c->given.empty()) return;
+  if (is_interleaved(mask)) add_around_given(c, kTakenAfter, kTakenBefore);  // the pixels that take light from it
+  if (!has(mask, Effect::edge_sampling)) return;
+  for (std::uint32_t tile = 0; tile < c->given.count; ++tile) c->given[tile] |= c->changed[tile];
+  add_around_given(c, 1, 1);
 }
 
 void clear_changes(Coherence* c) {
@@ -265,7 +282,7 @@ void clear_changes(Coherence* c) {
 
 void start_recording(Coherence* c, FrameData* frame, Array<Tracer> tracers) {
   CHECK_LE(tracers.count, c->plan.threads);
-  CHECK_LE(frame->settings.samples_per_pixel, c->plan.samples);
+  CHECK_LE(kept_sample_count(frame->settings, frame->mask), c->plan.samples);
   CHECK(frame->geometry.accel_info != &c->observed);  // else it would call itself
   if (!c->plan.tables_only) frame->kept.first_hits = c->first_hits.data;
   if (is_compensated(frame->settings, frame->mask)) frame->kept.compensation_paths = c->paths.data;

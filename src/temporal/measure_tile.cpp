@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "shade/edges.h"
 #include "temporal/tile_changes.h"
 
 namespace pocketray {
@@ -25,12 +26,14 @@ TileHits measure_tile(const FrameData& frame, const Hit* first_hits, std::uint32
   float reach = 0;  // largest coordinate of the triangles
   const std::uint32_t right = std::min(column + kChangeTileSide, settings.width),
                       bottom = std::min(row + kChangeTileSide, settings.height);
-  for (std::uint32_t sample = 0; sample < settings.samples_per_pixel; ++sample) {
+  const std::uint32_t samples = kept_sample_count(settings, frame.mask);
+  for (std::uint32_t sample = 0; sample < samples; ++sample) {
     for (std::uint32_t y = row; y < bottom; ++y) {
       if (!(known >> (8 * (y - row)) & 1)) continue;
       const Hit* line = first_hits + (std::size_t(sample) * settings.height + y) * settings.width;
       for (std::uint32_t x = column; x < right; ++x) {
         const Hit& hit = line[x];
+        if (sample >= settings.samples_per_pixel && !is_edge(settings, first_hits, x, y)) continue;
         if (hit.triangle == kNoTriangle) {
           tile.t_max = __builtin_inff();
           continue;

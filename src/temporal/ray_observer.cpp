@@ -11,7 +11,8 @@ const MarkingObserver& observer_of(const TraceStats* stats) {
 }
 
 void mark(const MarkingObserver& o, const Ray& ray, float t_end) {
-  o.marked[std::size_t(o.row) * o.tables->width + o.column] = 1;
+  // Threads may mark one pixel at once: they trace pixels for those of others around them, too.
+  __atomic_store_n(&o.marked[std::size_t(o.row) * o.tables->width + o.column], std::uint8_t(1), __ATOMIC_RELAXED);
   mark_ray(*o.tables, ray, t_end, block_of(*o.tables, o.column, o.row));
 }
 

@@ -4,8 +4,8 @@
 #include <cstring>
 
 #include "base/check.h"
+#include "shade/edges.h"
 #include "shade/interleaved.h"
-#include "shade/trace_spans.h"
 #include "temporal/beam_search.h"
 #include "temporal/tile_search.h"
 
@@ -116,18 +116,20 @@ void for_each_hit(const TileOfPixels& tile, Visit visit) {
   const Settings& settings = tile.frame.settings;
   const std::uint32_t right = std::min(tile.column + kChangeTileSide, settings.width),
                       bottom = std::min(tile.row + kChangeTileSide, settings.height);
-  for (std::uint32_t sample = 0; sample < settings.samples_per_pixel; ++sample)
+  const std::uint32_t samples = kept_sample_count(settings, tile.frame.mask);
+  for (std::uint32_t sample = 0; sample < samples; ++sample)
     for (std::uint32_t y = tile.row; y < bottom; ++y)
       for (std::uint32_t x = tile.column; x < right; ++x) {
         const std::uint64_t bit = tile.bit(x, y);
         if (!(tile.known & ~tile.found & bit)) continue;
+        if (sample >= settings.samples_per_pixel && !is_edge(settings, tile.search.last.first_hits, x, y)) continue;
         const std::size_t line = std::size_t(sample) * settings.height + y;
         visit(x, y, sample, tile.search.last.first_hits[line * settings.width + x], bit);
       }
 }
 
 Surface surface_at(const FrameData& frame, std::uint32_t x, std::uint32_t y, std::uint32_t sample, const Hit& hit) {
-  const Vec2 offset = sample_offset(sample, frame.settings.samples_per_pixel);
+  const Vec2 offset = kept_sample_offset(frame.settings, sample);
   Surface s;
   frame.kernels.first_surface(
       frame, camera_ray(frame.view.camera, static_cast<float>(x) + offset.x, static_cast<float>(y) + offset.y), hit,

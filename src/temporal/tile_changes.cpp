@@ -6,6 +6,7 @@
 #include "base/check.h"
 #include "brdf/clear_coat.h"
 #include "brdf/sheen.h"
+#include "shade/edges.h"
 #include "shade/trace_spans.h"
 #include "temporal/tile_search.h"
 
@@ -83,6 +84,16 @@ std::uint64_t find_marked(const ChangeSearch& search, std::uint32_t column, std:
   return found;
 }
 
+// Returns which of a tile's known pixels have samples added at edges.
+std::uint64_t edges_of(const ChangeSearch& search, std::uint32_t column, std::uint32_t row, std::uint64_t known) {
+  const Settings& settings = search.frame->settings;
+  std::uint64_t found = 0;
+  for (std::uint32_t y = 0; y < kChangeTileSide && row + y < settings.height; ++y)
+    for (std::uint32_t x = 0; x < kChangeTileSide && column + x < settings.width; ++x)
+      if (is_edge(settings, search.last.first_hits, column + x, row + y)) found |= std::uint64_t(1) << (8 * y + x);
+  return found & known;
+}
+
 std::uint64_t find_changes_of(const ChangeSearch& search, std::uint32_t tile, const Suspects& suspects,
                               std::uint64_t known_pixels, std::uint64_t* given, ChangeCounts* counts,
                               TraceStats* stats) {
@@ -103,25 +114,36 @@ std::uint64_t find_changes_of(const ChangeSearch& search, std::uint32_t tile, co
   if (!any && is_empty(sources) && !paths.any) return marked;
   const TilePixels pixels = pixels_of(frame.settings, column, row, known_pixels);
   if (pixels.count == 0) return 0;
+  // Finds changes of the samples [begin, end) of the search's pixels.
+  auto search_samples = [&](TileSearch* t, std::uint32_t begin, std::uint32_t end) {
+    for (std::uint32_t sample = begin; sample < end; ++sample) {
+      t->hits = search.last.first_hits + std::size_t(sample) * frame.settings.width * frame.settings.height;
+      t->offset = kept_sample_offset(frame.settings, sample);
+      if (seen) find_changed_hits(t, hits.t_max);
+      find_receivers(t);
+      if (sample < frame.settings.samples_per_pixel) {  // others take the light that these share
+        find_other_light(t, sources);
+        if (paths.any) find_other_paths(t, sample, hits, paths);
+      }
+      KnownShadows* known = known_shadows(search, sample, tile);
+      for_each_suspect(search, hits, suspects.lights, [&](const LightRun& run, std::uint32_t light, bool has_changed) {
+        const bool is_kept = light < search.known_lights;
+        KnownShadows none, *of_light = is_kept ? &known[light] : &none;
+        // For a changed light, what is known still holds for pixels that it neither reached nor reaches.
+        has_changed ? find_lit_by(t, run, light) : find_changed_shadows(t, run, light, hits.room, is_kept, of_light);
+        return true;
+      });
+    }
+  };
+  const std::uint32_t samples = frame.settings.samples_per_pixel, all = kept_sample_count(frame.settings, frame.mask);
   TileSearch t(search, pixels, marked, *given, counts, stats);
-  for (std::uint32_t sample = 0; sample < frame.settings.samples_per_pixel; ++sample) {
-    t.hits = search.last.first_hits + std::size_t(sample) * frame.settings.width * frame.settings.height;
-    t.offset = sample_offset(sample, frame.settings.samples_per_pixel);
-    if (seen) find_changed_hits(&t, hits.t_max);
-    find_receivers(&t);
-    find_other_light(&t, sources);
-    if (paths.any) find_other_paths(&t, sample, hits, paths);
-    KnownShadows* known = known_shadows(search, sample, tile);
-    for_each_suspect(search, hits, suspects.lights, [&](const LightRun& run, std::uint32_t light, bool has_changed) {
-      const bool is_kept = light < search.known_lights;
-      KnownShadows none, *of_light = is_kept ? &known[light] : &none;
-      // For a changed light, what is known still holds for pixels that it neither reached nor reaches.
-      has_changed ? find_lit_by(&t, run, light) : find_changed_shadows(&t, run, light, hits.room, is_kept, of_light);
-      return true;
-    });
-  }
+  search_samples(&t, 0, samples);
   *given = t.given;
-  return t.changed;
+  if (all == samples) return t.changed;
+  const TilePixels at_edges = pixels_of(frame.settings, column, row, edges_of(search, column, row, known_pixels));
+  TileSearch added(search, at_edges, t.changed, t.given, counts, stats);
+  if (at_edges.count > 0) search_samples(&added, samples, all);
+  return added.changed;
 }
 
 }  // namespace
@@ -137,7 +159,8 @@ const Surface& surface_of(TileSearch* t, std::uint32_t k) {
 
 void forget_shadows(const ChangeSearch& search, std::uint32_t tile, std::uint64_t changed) {
   if (!changed) return;
-  for (std::uint32_t sample = 0; sample < search.frame->settings.samples_per_pixel; ++sample) {
+  const std::uint32_t samples = kept_sample_count(search.frame->settings, search.frame->mask);
+  for (std::uint32_t sample = 0; sample < samples; ++sample) {
     KnownShadows* known = known_shadows(search, sample, tile);
     for (std::uint32_t light = 0; light < search.known_lights; ++light)
       known[light].known &= ~changed, known[light].idle &= ~changed;

@@ -17,19 +17,22 @@ namespace {
 
 constexpr std::uint32_t kRich = kAllFeatures;
 
-// Which pixels are traced, the others being interpolated between them.
+// Which pixels are traced, the others being interpolated between them; or samples added to some.
 struct Traced {
   float contrast = 0;
   Resolution resolution = Resolution::full;
+  std::uint32_t edge_samples = 0;
 };
 constexpr Traced kAll = {};
 constexpr Traced kSome[] = {
-    {0.25f, Resolution::full}, {0, Resolution::checkerboard}, {0.25f, Resolution::half}};
-constexpr Traced kAllOrSome[] = {kAll, kSome[0], kSome[1], kSome[2]};
+    {0.25f, Resolution::full}, {0, Resolution::checkerboard}, {0.25f, Resolution::half}, {0, Resolution::full, 5}};
+constexpr Traced kAllOrSome[] = {kAll, kSome[0], kSome[1], kSome[2], kSome[3]};
 
 Settings small_settings(const Traced& traced = kAll) {
   Settings settings = settings_for(kRich, 45, 34);
   settings.selective_contrast = traced.contrast, settings.resolution = traced.resolution;
+  settings.edge_samples = traced.edge_samples;
+  if (traced.edge_samples > 0) settings.samples_per_pixel = 1;  // others take none at edges
   return settings;
 }
 

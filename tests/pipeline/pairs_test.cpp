@@ -168,6 +168,7 @@ const Paired kFeatures[] = {
     {"light maps", 0, [](Case*) {}, render_with_map},
     {"rows shared", 0, [](Case*) {}, render_rows},
     {"samples", bit(Effect::supersampling), [](Case* c) { c->settings.samples_per_pixel = 3; }, nullptr},
+    {"edge samples", bit(Effect::edge_sampling), [](Case* c) { c->settings.edge_samples = 4; }, nullptr},
     {"orthographic", 0,
      [](Case* c) {
        Camera& camera = c->made->cameras[0];
@@ -231,5 +232,5 @@ TEST_CASE("pairs_render_what_they_declare") {
       check_pair(a, b, some, 5), check_pair(a, b, all, 3);
       ++pairs;
     }
-  CHECK(pairs == 89);  // of 91; radiosity replaces virtual lights, with compensation or not
+  CHECK(pairs == 103);  // of 105; radiosity replaces virtual lights, with compensation or not
 }

@@ -85,7 +85,7 @@ TEST_CASE("plan_effects_follow_the_scene") {
       // Stored, or by request.
       {kAllFeatures, kAllEffects & ~bit(E::radiosity) & ~bit(E::instant_radiosity) & ~bit(E::selective) &
                          ~bit(E::environment) & ~bit(E::environment_shadow) & ~bit(E::undersampling) &
-                         ~bit(E::source_selection)},
+                         ~bit(E::source_selection) & ~bit(E::edge_sampling)},
   };
   for (const Row& row : rows) {
     CAPTURE(row.features);

@@ -116,6 +116,9 @@ TEST_CASE("probe_traps_an_effect_that_is_not_allowed") {
   Settings selective = settings_for(kAllFeatures, 24, 18);
   selective.selective_contrast = 0.25f, selective.resolution = Resolution::half;
   auto interpolated = make_renderer(generated->scene, selective);
+  Settings plain = settings_for(kAllFeatures, 24, 18);
+  plain.samples_per_pixel = 1, plain.edge_samples = 4;
+  auto with_edges = make_renderer(generated->scene, plain);
   const TestEnvironment even = even_environment({1, 1, 1});
   Scene under_environment = generated->scene;
   even.give(&under_environment);
@@ -125,7 +128,8 @@ TEST_CASE("probe_traps_an_effect_that_is_not_allowed") {
   street->bind();
   auto with_many_lights = make_renderer(street->scene, settings_for(kAllFeatures, 24, 18));
   const EffectMask all = with_many_lights->renderer.effects.mask | interpolated->renderer.effects.mask |
-                         with_virtual_lights->renderer.effects.mask | with_environment->renderer.effects.mask;
+                         with_virtual_lights->renderer.effects.mask | with_environment->renderer.effects.mask |
+                         with_edges->renderer.effects.mask;
   REQUIRE(all == (kAllEffects & ~bit(Effect::radiosity)));  // nothing is stored
   for (const EffectRow& row : kEffectList) {
     if (!has(all, row.effect)) continue;
@@ -134,6 +138,7 @@ TEST_CASE("probe_traps_an_effect_that_is_not_allowed") {
         row.effect == Effect::instant_radiosity                                         ? &with_virtual_lights->renderer
         : row.effect == Effect::environment || row.effect == Effect::environment_shadow ? &with_environment->renderer
         : row.effect == Effect::source_selection                                        ? &with_many_lights->renderer
+        : row.effect == Effect::edge_sampling                                           ? &with_edges->renderer
         : row.effect == Effect::selective || row.effect == Effect::undersampling        ? &interpolated->renderer
                                                                                         : &test->renderer;
     CHECK(signal_of_render_without(row.effect, renderer) == SIGABRT);

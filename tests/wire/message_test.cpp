@@ -240,7 +240,7 @@ TEST_CASE("message_values_out_of_range_are_refused") {
       {MessageType::frame_request, 8 + 95, {5}},                           // filter
       {MessageType::frame_request, 8 + 96, {2}},                           // normals
       {MessageType::frame_request, 8 + 97, {kIndirectChoiceCount}},        // indirect
-      {MessageType::frame_request, 8 + 98, {5}},                          // reconstruction
+      {MessageType::frame_request, 8 + 98, {5}},                           // reconstruction
       {MessageType::frame_request, 8 + 101, {2}},                          // compensation
       {MessageType::frame_request, 8 + 102, nan},                          // selective
       {MessageType::frame_request, 8 + more + 113, {0, 0, 0x80, 0xBF}},    // exposure −1

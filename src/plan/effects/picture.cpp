@@ -27,6 +27,11 @@ EffectDecision decide_undersampling(const EffectCall& c) {
   return decided(true, "a quarter of the pixels traced");
 }
 
+EffectDecision decide_edge_sampling(const EffectCall& c) {
+  const std::uint32_t samples = c.settings.edge_samples;
+  return decided(samples > 0, "%u sample%s added at edges", samples, samples == 1 ? "" : "s");
+}
+
 EffectDecision decide_animation(const EffectCall& c) {
   const std::uint32_t still = c.census.invisible[static_cast<int>(Invisible::still_animation)];
   if (!c.census.is_animated && still > 0)
@@ -41,6 +46,7 @@ constexpr EffectRule kRules[] = {
     {Effect::selective, decide_selective},
     {Effect::undersampling, decide_undersampling},
     {Effect::animation, decide_animation},
+    {Effect::edge_sampling, decide_edge_sampling, [](const EffectCall&) { return false; }},
 };
 
 }  // namespace
