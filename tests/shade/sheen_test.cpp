@@ -132,7 +132,8 @@ TEST_CASE("sheen_dims_the_gloss_of_its_base") {
   Sheet s(m, sheen_of(kColor, 0.6f), false);
   s.scene.scene.info.ambient = {0.3f, 0.2f, 0.1f};
   s.scene.bind();
-  const Vec3d gloss = to_double(reflected_surroundings(s.scene.scene.info, m, m.specular, dot(n, way)));
+  const Vec3d gloss =
+      to_double(reflected_surroundings(radiance_of_surroundings(s.scene.scene.info), m, m.specular, dot(n, way)));
   const double cosine = -static_cast<double>(way.z), r = static_cast<double>(0.6f);
   check_near(seen(&s.scene, eye),
              gloss * passes_of(kColor, r, cosine) + to_double(kColor) * sheen_albedo(r, cosine) * Vec3d{0.3, 0.2, 0.1});
@@ -153,7 +154,9 @@ TEST_CASE("sheen_lies_under_a_coat") {
       0.8 * kGgxBrdf.exact_value(lobe, to_double(lobe.specular), {0, 0, 0}, {n, {0, 0, 0}}, v, l).x * l.z;
   const Vec3d below = (Vec3d{0.6, 0.6, 0.6} * (p / kPiD) + to_double(kColor) * sheen_value(0.5, n, v, l)) * l.z;
   const Vec3d even = Vec3d{0.6, 0.6, 0.6} * p + to_double(kColor) * sheen_albedo(0.5, v.z);
-  const Vec3 glow = reflected_surroundings(s.scene.scene.info, lobe, lobe.specular, static_cast<float>(v.z)) * 0.8f;
+  const Vec3 glow = reflected_surroundings(radiance_of_surroundings(s.scene.scene.info), lobe, lobe.specular,
+                                           static_cast<float>(v.z)) *
+                    0.8f;
   check_near(seen(&s.scene, eye),
              (below + even * Vec3d{0.2, 0.4, 0.8}) * through + Vec3d{coat, coat, coat} + to_double(glow), 1e-3);
 }
