@@ -68,7 +68,7 @@ configure: setup
 run: configure
 	cmake --build $(BUILD) -j$(JOBS) --target pocketray
 	$(POCKETRAY) plan $(SCENE)
-	$(POCKETRAY) render $(SCENE) -o $(BUILD)/$(SCENE).png
+	$(POCKETRAY) render $(SCENE) --quality high -o $(BUILD)/$(SCENE).png
 	$(POCKETRAY) bench $(SCENE)
 	@if [ -n "$$DISPLAY$$WAYLAND_DISPLAY" ]; then \
 	  echo $(POCKETRAY) view $(SCENE); $(POCKETRAY) view $(SCENE); \

@@ -47,6 +47,7 @@ Status find_level_settings(const CommonOptions& o, const SceneSource& source, Re
     for (int i = 0; i < kSettingCount; ++i)
       if (is_given(o.settings.options[i], kSettingList[i], given))
         kSettingList[i].field.set(&all, kSettingList[i].field.get(given));
+    if (all.samples_per_pixel > 1) all.edge_samples = given.edge_samples;  // which several samples leave out
     settings[level] = all;
   }
   return success();

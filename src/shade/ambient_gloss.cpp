@@ -55,7 +55,8 @@ void put_in_front(FrameData* frame) {
 }  // namespace
 
 Vec3 even_surroundings(const FrameData& frame, const Surface& s) {
-  if (!has(frame.mask, Effect::radiosity)) return radiance_of_surroundings(frame.scene->info);
+  if (!has(frame.mask, Effect::radiosity) || frame.scene->radiosity_info.empty())
+    return radiance_of_surroundings(frame.scene->info);
   constexpr Vec3 kWhite = {1, 1, 1};
   Vec3 sum = {0, 0, 0};
   for (int i = 0; i < IndirectList::kCount; ++i) {

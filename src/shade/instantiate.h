@@ -98,10 +98,13 @@ class Instantiations {
   template <std::size_t... index>
   static Function pick(EffectMask wanted, std::index_sequence<index...>) {
     static constexpr Function table[] = {Part::template instance<kMasks.mask[index]>()...};
-    for (std::size_t i = 0; i < sizeof...(index); ++i)
-      if (kMasks.mask[i] == wanted) return table[i];
-    CHECK(false);
-    return nullptr;
+    std::size_t begin = 0, end = sizeof...(index);  // masks rise
+    while (end - begin > 1) {
+      const std::size_t middle = begin + (end - begin) / 2;
+      (kMasks.mask[middle] <= wanted ? begin : end) = middle;
+    }
+    CHECK(kMasks.mask[begin] == wanted);
+    return table[begin];
   }
 };
 

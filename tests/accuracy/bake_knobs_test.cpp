@@ -61,7 +61,7 @@ TEST_CASE("bake_knobs_fit_what_a_scene_holds") {
   CHECK(fitting("textures", built_in) == "compressed;exact;");
   CHECK(fitting("textures", bare) == "");
   CHECK(fitting("radiosity", large) == "");
-  CHECK(fitting("radiosity", bare) == "none;75 patches;300 patches;1200 patches;2400 patches;");
+  CHECK(fitting("radiosity", bare) == "as opened;75 patches;300 patches;1200 patches;2400 patches;");
 }
 
 // Goal: only a sweep that may bake has these knobs, unchanged settings besides, and never a point on the front. Method:

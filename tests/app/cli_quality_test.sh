@@ -16,15 +16,17 @@ picture draft --quality draft
 picture draft_by_settings --depth 2 --area-lights 1 --cut-off 4 --selective .5 --resolution half --light-tolerance .5
 check draft_is_its_settings cmp -s draft.ppm draft_by_settings.ppm
 picture high --quality high
-picture high_by_settings --samples 4 --indirect instant-radiosity --virtual-lights 256 --compensation rays
+picture high_by_settings --edge-samples 8 --indirect instant-radiosity --virtual-lights 256 --compensation rays
 check high_is_its_settings cmp -s high.ppm high_by_settings.ppm
-picture high_of_one_sample --quality high --samples 1
+picture high_without_edges --quality high --edge-samples 0
 picture one_sample --indirect instant-radiosity --virtual-lights 256 --compensation rays
-check settings_change_the_level cmp -s high_of_one_sample.ppm one_sample.ppm
+check settings_change_the_level cmp -s high_without_edges.ppm one_sample.ppm
+picture high_of_two_samples --quality high --samples 2
+check samples_leave_out_edges test "$(grep -c 'edge' high_of_two_samples.err)" = 0
 check levels_ask_for_nothing_without_effect test "$(grep -c 'has no effect' high.err)" = 0
 expect quality_unknown 1 'draft, low, medium, high or best' render cornell "${small[@]}" --quality superb -o refused.png
 expect quality_beside_a_budget 2 'excludes' render cornell "${small[@]}" --quality low --budget-ms 40 -o refused.png
-expect plan_shows_the_dial 0 '^  high .*samples 1 to 4, indirect auto to instant-radiosity' plan seesaw
+expect plan_shows_the_dial 0 '^  high .*edge-samples 0 to 8.*indirect auto to instant-radiosity|^  high .*indirect auto to instant-radiosity.*edge-samples 0 to 8' plan seesaw
 expect plan_says_what_measures_it 0 'quality, built in; .pocketray accuracy. measures' plan cornell
 # Goal: plan says what baked radiosity would take, unless it is stored or there is nothing to solve.
 if "${run[@]}" bake --help 2>/dev/null | grep -q -- --radiosity && "${run[@]}" --help | grep -q '^ *accuracy '; then

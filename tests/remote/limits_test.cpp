@@ -225,8 +225,8 @@ bool receiver_accepts(const Field& field, double x) {
 
 bool is_count(Quantity q) {
   return q == Quantity::width || q == Quantity::height || q == Quantity::samples || q == Quantity::depth ||
-         q == Quantity::area_light_points || q == Quantity::virtual_lights || q == Quantity::environment_shadows ||
-         q == Quantity::camera_index || q == Quantity::price;
+         q == Quantity::edge_samples || q == Quantity::area_light_points || q == Quantity::virtual_lights ||
+         q == Quantity::environment_shadows || q == Quantity::camera_index || q == Quantity::price;
 }
 // Quantities stored in files.
 bool is_in_files(Quantity q) {

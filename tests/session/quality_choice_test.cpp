@@ -29,14 +29,16 @@ CommonOptions high() {
 // Goal: --quality sets what the command line leaves open. Method: a setting that differs from its default, and one that
 // was given at its default.
 TEST_CASE("quality_leaves_settings_of_the_command_line") {
-  CHECK(settings_with(high()).samples_per_pixel == 4);
+  CHECK(settings_with(high()).edge_samples == 8);
   CHECK(settings_with(high()).virtual_lights == 256);
   CommonOptions o = high();
   o.settings["virtual-lights"].count = 16;
   CHECK(settings_with(o).virtual_lights == 16);
-  CHECK(settings_with(o).samples_per_pixel == 4);
-  o.settings["samples"].given = [] { return true; };
-  CHECK(settings_with(o).samples_per_pixel == 1);
+  CHECK(settings_with(o).edge_samples == 8);
+  o.settings["samples"].count = 2;
+  CHECK(settings_with(o).edge_samples == 0);
+  o.settings["samples"].count = 1, o.settings["edge-samples"].given = [] { return true; };
+  CHECK(settings_with(o).edge_samples == 0);
   o.quality.clear();
   CHECK(settings_with(o).indirect == IndirectChoice::automatic);
 }

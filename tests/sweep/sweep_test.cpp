@@ -135,7 +135,7 @@ TEST_CASE("accuracy_measures_every_knob_of_the_scene") {
   for (const std::string& note : sweep.notes) notes += note + "\n";
   std::string wanted =
       "samples area-lights indirect selective "
-      "resolution output ";
+      "resolution edge-samples output ";
 #ifdef POCKETRAY_HAVE_NETWORK
   wanted += "near-lossless ";
 #endif

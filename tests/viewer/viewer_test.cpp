@@ -369,7 +369,7 @@ TEST_CASE("viewer_turns_the_dial") {
   const Quality medium, low = builtin_level(QualityLevel::low, EffectMask(0));
   const Quality high = after_presses({{finer, true}}).settings,
                 best = after_presses({{finer, true}, {finer, true}}).settings;
-  CHECK(high.samples_per_pixel == 4);
+  CHECK(high.edge_samples == 8);
   CHECK(best.samples_per_pixel == 16);
   const DialEnd beyond = after_presses({{finer, true}, {finer, true}, {finer, true}});
   CHECK(same_quality(beyond.settings, best));

@@ -110,7 +110,7 @@ class Device:
         if greets:
             self.send(hello())
             kind, fields = self.receive()
-            check(kind == HELLO and fields[:6] == b"PRAY\36\0", "the server says hello first, of version 30")
+            check(kind == HELLO and fields[:6] == b"PRAY\37\0", "the server says hello first, of version 31")
             self.side, self.message_bytes, self.scene_bytes, self.price = struct.unpack("<HIQH", fields[6:])
             check(self.price >= 256, "the hello's price")
 
