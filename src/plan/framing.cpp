@@ -12,6 +12,7 @@ constexpr double kAngleStep = kPi / 2 / (kReachAngles - 1);
 
 // Axes of a picture that is seen from the unit direction `backward`.
 void picture_axes(const Vec3& backward, Vec3* right, Vec3* up) {
+  CHECK(right != nullptr && up != nullptr);
   *right = normalize(cross(Vec3{0, 1, 0}, backward));
   if (is_zero(*right))
     make_basis(backward, right, up);
@@ -34,6 +35,7 @@ struct Fit {
   double distance, shift;
 };
 Fit fit(const float (&positive)[kReachAngles], const float (&negative)[kReachAngles], double k) {
+  CHECK_GE(k, 0);
   const double p = reach_at(positive, k), n = reach_at(negative, k);
   return {(p + n) / (2 * k), (p - n) / 2};
 }
@@ -58,6 +60,7 @@ Vec3 within_coordinates(const Vec3& p) {
 }  // namespace
 
 ReachMeter::ReachMeter(const Vec3& middle, const Vec3& backward) : middle_(middle), backward_(backward) {
+  CHECK(!is_zero(backward));
   picture_axes(backward, &right_, &up_);
   for (std::uint32_t i = 0; i < kReachAngles; ++i) {
     cosine_[i] = static_cast<float>(det_cos(i * kAngleStep)), sine_[i] = static_cast<float>(det_sin(i * kAngleStep));

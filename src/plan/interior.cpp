@@ -30,6 +30,7 @@ struct FloorPlan {
 };
 
 PlanPoint place(const FloorPlan& plan, int index) {
+  CHECK(index >= 0 && index < kPlaces);
   const float column = static_cast<float>(index % kPlacesPerSide), row = static_cast<float>(index / kPlacesPerSide);
   return {plan.half.x * ((2 * column + 1) / kPlacesPerSide - 1), plan.half.z * ((2 * row + 1) / kPlacesPerSide - 1)};
 }
@@ -47,6 +48,7 @@ PlaceRange places_between(float low, float high, float half) {
 }
 
 void add_heights(const Vec3 (&corner)[3], FloorPlan* plan) {
+  CHECK(plan != nullptr);
   const Vec3 low = min(min(corner[0], corner[1]), corner[2]), high = max(max(corner[0], corner[1]), corner[2]);
   const PlanPoint a = {corner[0].x, corner[0].z};
   const PlanPoint b = between(a, {corner[1].x, corner[1].z}), c = between(a, {corner[2].x, corner[2].z});
@@ -68,6 +70,7 @@ void add_heights(const Vec3 (&corner)[3], FloorPlan* plan) {
 
 // Intersects the triangle with the horizontal plane at `eye_height`, and the rays of all places with that segment.
 void add_walls(const Vec3 (&corner)[3], float eye_height, FloorPlan* plan) {
+  CHECK(plan != nullptr);
   PlanPoint ends[3];
   int count = 0;
   for (int i = 0; i < 3; ++i) {
@@ -114,6 +117,7 @@ void for_each_triangle(const Scene& scene, const Vec3& middle, Visit visit) {
 
 // The height that a share of the values lies below; NaN without any.
 float quantile(float (&values)[kPlaces], int count, float share) {
+  CHECK(count >= 0 && count <= kPlaces);
   if (count == 0) return std::numeric_limits<float>::quiet_NaN();
   float* at = values + static_cast<int>(share * static_cast<float>(count - 1));
   std::nth_element(values, at, values + count);
@@ -130,6 +134,7 @@ float floor_level(const FloorPlan& plan) {
 }
 
 bool is_on_floor(const FloorPlan& plan, int index, float level) {
+  CHECK(index >= 0 && index < kPlaces);
   return std::fabs(plan.floor[index] - level) <= 0.1f * plan.half.y;
 }
 

@@ -22,6 +22,7 @@ Corners corners(const Scene& scene, const Triangle& t, const Vec3& from) {
 
 // By the divergence theorem, ∑ (corner · area vector) / 3 is the enclosed volume, negative if normals point inward.
 double enclosed_volume(const Scene& scene, const Vec3& middle) {
+  CHECK(is_finite(middle));
   double volume = 0;
   for (const Triangle& t : scene.triangles) {
     const Corners k = corners(scene, t, middle);

@@ -29,6 +29,7 @@ struct DisplayBlock {
 
 // Fills the block with radiances as shares of white. Returns whether they may bend enough for an edge.
 bool fill_block(const OpenWindow& window, std::uint32_t left, std::uint32_t top, DisplayBlock* block) {
+  CHECK(block != nullptr);
   const Settings& settings = window.settings();
   const float exposure = 1 / window.tracer->frame->selection.white;
   Vec3 low = {1, 1, 1}, high = {0, 0, 0};
@@ -47,8 +48,8 @@ bool fill_block(const OpenWindow& window, std::uint32_t left, std::uint32_t top,
     }
     to[0] = to[1] = 0;
   }
-  // A bend is at most twice √high − √low, which is below kHalf if high − low is below kHalf² + 2 kHalf √low, and √low is
-  // at least low. A little less than half, so that rounding leaves out no edge.
+  // A bend is at most twice √high − √low, which is below kHalf if high − low is below kHalf² + 2 kHalf √low, and √low
+  // is at least low. A little less than half, so that rounding leaves out no edge.
   constexpr float kHalf = 0.49f * kBendMax;
   const Vec3 range = high - low - low * (2 * kHalf);
   return max_component(range) > kHalf * kHalf;
@@ -77,6 +78,7 @@ bool is_edge(const DisplayBlock& block, std::uint32_t column, std::uint32_t row)
 
 // Marks the pixels on which a tile's pixels in the mask depend.
 void want_tile(OpenWindow* window, std::uint32_t left, std::uint32_t top, std::uint64_t mask) {
+  CHECK(window != nullptr);
   const Settings& settings = window->settings();
   auto want = [&](std::uint32_t column_begin, std::uint32_t column_end, std::uint32_t row_begin,
                   std::uint32_t row_end) {
@@ -106,6 +108,7 @@ struct EdgeSamples {
 bool traces_packets(const FrameData& frame) { return !frame.geometry.ray_by_ray && !frame.view.camera.orthographic; }
 
 void find_hits(Tracer* tracer, EdgeSamples* samples) {
+  CHECK(tracer->frame != nullptr && samples != nullptr);
   const FrameData& frame = *tracer->frame;
   const Tile& tile = samples->tile;
   const std::uint32_t of_pixel = frame.settings.edge_samples;

@@ -212,7 +212,7 @@ InterleavedLight sum_of_all(std::uint32_t step, std::uint32_t own, bool with_ope
 
 // Keeps a pixel's surface, unless it reflects nothing, for keep_sum().
 void keep_surfaces(Tracer* tracer, const SharedTile& tile, const Region& region, const FirstHits& first) {
-  if (tracer->window.shared.empty()) return;
+  if (!is_shared(tracer->window)) return;
   const PixelList& wanted = tile.lists->wanted;
   for (std::uint32_t i = 0; i < wanted.count; ++i) {
     const std::uint32_t column = wanted.column[i], row = wanted.row[i];
@@ -237,7 +237,7 @@ void add_light_of_one_surface(Tracer* tracer, const SharedTile& tile, int source
   const FrameData& frame = *tracer->frame;
   const PixelList& wanted = tile.lists->wanted;
   const InterleavedSource& info = *kInterleavedSources[source];
-  const bool with_open = info.reads_open || tracer->window.shared.count > 0;
+  const bool with_open = info.reads_open || is_shared(tracer->window);
   for (std::uint32_t k = kTakenBefore * kRegionSide; k < (kTakenBefore + kTileSide) * kRegionSide; ++k)
     region->column[k] =
         sum_of_all(kRegionSide, k, with_open, [&](std::uint32_t at) { return region->pixel[at].light[source]; });

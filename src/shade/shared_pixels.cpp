@@ -19,8 +19,8 @@ constexpr int kSteps[9][2] = {{0, 0}, {-1, 0}, {1, 0}, {0, -1}, {0, 1}, {-1, -1}
 
 SharedPixel* shared_pixel(Tracer* tracer, std::uint32_t column, std::uint32_t row) {
   const PixelWindow& window = tracer->window;
-  if (window.shared.empty()) return nullptr;
-  CHECK(window.row != ~0u && row + kRowsAbove >= window.row);
+  if (!is_shared(window)) return nullptr;
+  CHECK_GE(row + kRowsAbove, window.row);
   return &window.shared[(row + kRowsAbove - window.row) * tracer->frame->settings.width + column];
 }
 

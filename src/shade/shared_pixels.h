@@ -11,6 +11,8 @@ struct SharedPixel {
   bool are_few[kInterleavedSourceCount];
 };
 
+// Returns whether the window keeps shared light. None is kept of previews, which are coarser than the picture.
+inline bool is_shared(const PixelWindow& window) { return window.shared.count > 0 && window.row != ~0u; }
 // Returns the slot of a pixel in the tracer's window; null: none is kept.
 SharedPixel* shared_pixel(Tracer* tracer, std::uint32_t column, std::uint32_t row);
 

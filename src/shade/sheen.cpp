@@ -1,11 +1,13 @@
 #include "shade/sheen.h"
 
+#include "base/check.h"
 #include "effect/effect_probe.h"
 #include "shade/texture.h"
 
 namespace pocketray {
 
 float find_sheen(const FrameData& frame, const Ray& ray, Surface* s) {
+  CHECK(s != nullptr && s->material != nullptr);
   const Scene& scene = *frame.scene;
   s->sheen = {{0, 0, 0}, s->diffuse, 0};
   if (!has(frame.mask, Effect::sheen)) return 1;

@@ -27,22 +27,25 @@ void set_directions(const CameraRays& camera, const Tile& tile, const Vec2& offs
   }
 }
 
+// Threads trace pixels for those of others around them, too, and store equal values.
+[[gnu::noinline]] void keep_for_neighbours(const Hit& hit, Hit* kept) {
+  Hit stored = hit;
+  __atomic_store(&kept->t, &stored.t, __ATOMIC_RELAXED);
+  __atomic_store(&kept->u, &stored.u, __ATOMIC_RELAXED);
+  __atomic_store(&kept->v, &stored.v, __ATOMIC_RELAXED);
+  __atomic_store(&kept->triangle, &stored.triangle, __ATOMIC_RELAXED);
+}
+
 }  // namespace
 
 void keep_first_hit(Tracer* tracer, std::uint32_t sample, std::uint32_t column, std::uint32_t row, const Hit& hit) {
   const FrameData& frame = *tracer->frame;
   std::size_t width = frame.settings.width;
   Hit* kept = &frame.kept.first_hits[(std::size_t(sample) * frame.settings.height + row) * width + column];
-  if (!has(frame.mask, Effect::edge_sampling)) {
+  if (has(frame.mask, Effect::edge_sampling))
+    keep_for_neighbours(hit, kept);
+  else
     *kept = hit;
-    return;
-  }
-  // Threads trace pixels for those of others around them, too, and store equal values.
-  Hit stored = hit;
-  __atomic_store(&kept->t, &stored.t, __ATOMIC_RELAXED);
-  __atomic_store(&kept->u, &stored.u, __ATOMIC_RELAXED);
-  __atomic_store(&kept->v, &stored.v, __ATOMIC_RELAXED);
-  __atomic_store(&kept->triangle, &stored.triangle, __ATOMIC_RELAXED);
 }
 
 void observe_pixel(Tracer* tracer, std::uint32_t column, std::uint32_t row) {

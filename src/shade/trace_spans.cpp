@@ -127,6 +127,7 @@ void trace_spans(Tracer* tracer, const Span* spans, std::uint32_t span_count, Ao
   const StripFunction trace = has(frame.mask, Effect::edge_sampling) && pitch > 1 ? frame.kernels.trace_window_strip
                                                                                   : frame.kernels.trace_strip;
   if (aov == Aov::none && trace && pitch > 1) {
+    tracer->window.row = ~0u;
     for (std::uint32_t i = 0; i < span_count; ++i) trace_blocks(tracer, trace, spans[i], pitch, rows);
     return;
   }

@@ -109,8 +109,8 @@ TEST_CASE("radiosity_of_divided_triangles_is_that_of_the_part") {
   CHECK(parts > 40);
 }
 
-// Goal: Phong's lobe reflects stored light as a diffuse surface of its mean albedo; no other lobe does, nor an unlit
-// material, nor a lobe that is switched off.
+// Goal: Phong's lobe reflects stored light as a diffuse surface of its mean albedo, and GGX's by its own albedo; an
+// unlit material does not, nor a lobe that is switched off.
 TEST_CASE("radiosity_is_reflected_by_glossy_lobes") {
   Stored s;
   const Vec3 any = {0, 0, 0};
@@ -141,7 +141,9 @@ TEST_CASE("radiosity_is_reflected_by_glossy_lobes") {
   CHECK(seen(kPhong, false, 0) == doctest::Approx(.45));
   CHECK(seen(kPhong, false, bit(Effect::specular)) == doctest::Approx(.25));
   CHECK(seen(kPhong, true, 0) == doctest::Approx(.25));
-  CHECK(seen(kGgx, false, 0) == doctest::Approx(.25));
+  const BrdfAlbedo albedo = kBrdfList[kGgx]->albedo(material, material.specular, 1);
+  CHECK(seen(kGgx, false, bit(Effect::ambient_gloss)) == doctest::Approx(.25));
+  CHECK(seen(kGgx, false, 0) == doctest::Approx(double(.25f + albedo.once.x + albedo.scattered.x)));
 }
 
 // Goal: no value leaves [0, the stored maximum], which the cut-off relies on. Method: tangents that overshoot both

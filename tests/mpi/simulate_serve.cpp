@@ -91,8 +91,8 @@ Status measure_costs(const StoredScene& scene, std::uint32_t samples, Costs* cos
     for (const std::vector<std::uint8_t>& picture : pictures)
       for (std::uint32_t row = 0; row < kHeight; row += kStrip) {
         std::uint8_t encoding;
-        encode_rows(session.encoder, row, kStrip, picture.data() + std::size_t(row) * line_bytes(session),
-                    request.deflate_level, bytes.data(), &encoding);
+        encode_rows(session.encoder, request.frame, row, kStrip,
+                    picture.data() + std::size_t(row) * line_bytes(session), request.coding, bytes.data(), &encoding);
       }
   });
   costs->encode_row /= 2 * kHeight;

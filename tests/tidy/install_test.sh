@@ -36,7 +36,7 @@ strict=(-O1 -pedantic -Wall -Wextra -Wshadow -Werror)
 by_pkg_config=$("$work/example")
 [ "$by_cmake" = "$by_pkg_config" ] || fail "CMake's example prints '$by_cmake', pkg-config's '$by_pkg_config'"
 
-"$prefix/bin/pocketray" render cornell -o "$work/cornell.ppm" >/dev/null
+"$prefix/bin/pocketray" render cornell --indirect ambient -o "$work/cornell.ppm" >/dev/null
 # Row 120, column 160 of a binary PPM without comments: its pixels are the last 320·240·3 bytes.
 pixel=$(tail -c $((320 * 240 * 3)) "$work/cornell.ppm" | od -An -tx1 -v -j $(((120 * 320 + 160) * 3)) -N 3 | tr -d ' \n')
 [ "$by_cmake" = "centre pixel: #$pixel" ] || fail "the example prints '$by_cmake'; the program's own picture has #$pixel there"

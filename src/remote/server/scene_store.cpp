@@ -49,6 +49,7 @@ Status too_many_bytes(std::uint64_t bytes_max) {
 
 // Bakes a scene into memory.
 Status write_bytes(const Scene& scene, std::uint64_t bytes_left, StoredScene* stored) {
+  CHECK(stored != nullptr);
   const std::size_t byte_count = baked_size(scene);
   if (byte_count > bytes_left) return too_many_bytes(bytes_left);
   std::uint8_t* bytes = take_aligned(byte_count, &stored->baked_block);
@@ -118,6 +119,7 @@ Status add_scene(const std::string& name, Status status, StoredScene* stored, Sc
 // Adds a room with its radiosity, as desktops open it, if there is memory for it besides `plain`, as devices do.
 Status store_lit(const std::string& name, const std::string& path, const StoredScene& plain, std::uint64_t bytes_left,
                  SceneStore* store, bool* is_lit) {
+  CHECK(store != nullptr && is_lit != nullptr);
   if (!calls_for_radiosity(plain.scene)) return success();
   Scene scene = plain.scene;
   scene.accel = {};
