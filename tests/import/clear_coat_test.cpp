@@ -4,20 +4,6 @@
 
 using namespace pocketray;
 
-namespace {
-
-// 2 × 2 texels of (0, 128, 64).
-const char* const kTexels =
-    ",\"textures\":[{\"source\":0}],\"images\":[{\"uri\":\"data:image/png;base64,"
-    "iVBORw0KGgoAAAANSUhEUgAAAAIAAAACCAYAAABytg0kAAAAEElEQVR42mNgaHD4D8YwBgA5dAb9ejoCwQAAAABJRU5ErkJggg==\"}]";
-
-ImportedScene load_text(const std::string& text) {
-  TemporaryFolder folder;
-  return load(folder.write("scene.gltf", text));
-}
-
-}  // namespace
-
 // Goal: KHR_materials_clearcoat becomes a clear coat with its textures; none without strength or over an unlit
 // material; the least roughness is the texture's. Method: examples; out of range and absent factors.
 TEST_CASE("gltf_clear_coats_are_read") {
@@ -26,10 +12,10 @@ TEST_CASE("gltf_clear_coats_are_read") {
            std::string(coat) + "}}" + more + "}";
   };
   ImportedScene imported =
-      load_text(triangle_gltf(coated("\"clearcoatFactor\":0.75,\"clearcoatRoughnessFactor\":0.5,\"clearcoatTexture\":{"
+      load_gltf(triangle_gltf(coated("\"clearcoatFactor\":0.75,\"clearcoatRoughnessFactor\":0.5,\"clearcoatTexture\":{"
                                      "\"index\":0},\"clearcoatRoughnessTexture\":{\"index\":0,\"texCoord\":1},"
                                      "\"clearcoatNormalTexture\":{\"index\":0,\"scale\":0.25}"),
-                              kTexels));
+                              kSmallTexture));
   CHECK(imported.warning.empty());
   REQUIRE(imported.scene.clear_coats.count == 1);
   const ClearCoat& coat = imported.scene.clear_coats[0];
@@ -39,21 +25,21 @@ TEST_CASE("gltf_clear_coats_are_read") {
   CHECK(imported.scene.textures[coat.roughness_texture.texture].uv_set == 1);
   CHECK(imported.scene.textures[coat.normal.texture].uv_set == 0);
   CHECK((imported.scene.tangents.count == 3 && !is_zero(unpacked(imported.scene.tangents[0]))));
-  imported = load_text(triangle_gltf(coated("\"clearcoatFactor\":7")));
+  imported = load_gltf(triangle_gltf(coated("\"clearcoatFactor\":7")));
   REQUIRE(imported.scene.clear_coats.count == 1);
   CHECK((imported.scene.clear_coats[0].strength == 1 && imported.scene.clear_coats[0].roughness == 0));
   for (const std::string& none :
        {coated(""), coated("\"clearcoatFactor\":0,\"clearcoatTexture\":{\"index\":0}"),
         std::string("{\"extensions\":{\"KHR_materials_unlit\":{},\"KHR_materials_clearcoat\":{\"clearcoatFactor\":1,"
                     "\"clearcoatTexture\":{\"index\":0}}}}")}) {
-    imported = load_text(triangle_gltf(none, kTexels));
+    imported = load_gltf(triangle_gltf(none, kSmallTexture));
     CHECK((imported.scene.clear_coats.empty() && imported.scene.textures.empty()));
   }
   // Its normals have the frame of the base's.
   imported =
-      load_text(triangle_gltf(coated("\"clearcoatFactor\":1,\"clearcoatNormalTexture\":{\"index\":0,\"texCoord\":1}",
+      load_gltf(triangle_gltf(coated("\"clearcoatFactor\":1,\"clearcoatNormalTexture\":{\"index\":0,\"texCoord\":1}",
                                      ",\"normalTexture\":{\"index\":0}"),
-                              kTexels));
+                              kSmallTexture));
   CHECK(imported.warning == "not used: normal textures of clear coats with texture coordinates other than the base's");
   CHECK(imported.scene.clear_coats[0].normal.texture == kNone);
 }

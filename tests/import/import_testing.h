@@ -75,4 +75,15 @@ inline double surface_area(const Scene& scene) {
   return area;
 }
 
+// The end of a glTF file with a texture of 2 × 2 texels of (0, 128, 64).
+constexpr const char* kSmallTexture =
+    ",\"textures\":[{\"source\":0}],\"images\":[{\"uri\":\"data:image/png;base64,"
+    "iVBORw0KGgoAAAANSUhEUgAAAAIAAAACCAYAAABytg0kAAAAEElEQVR42mNgaHD4D8YwBgA5dAb9ejoCwQAAAABJRU5ErkJggg==\"}]";
+
+// Loads the text of a glTF file.
+inline ImportedScene load_gltf(const std::string& text) {
+  TemporaryFolder folder;
+  return load(folder.write("scene.gltf", text));
+}
+
 }  // namespace pocketray

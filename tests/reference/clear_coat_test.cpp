@@ -25,17 +25,6 @@ ReferenceSurface coated(const Material& base, double strength, float roughness, 
   return s;
 }
 
-Vec3d at(double cosine, double turn) {
-  const double sine = std::sqrt(1 - cosine * cosine);
-  return {sine * std::cos(turn), sine * std::sin(turn), cosine};
-}
-
-Material plastic() {
-  Material m;
-  m.diffuse = {0.5f, 0.5f, 0.5f}, m.specular = {0.1f, 0.1f, 0.1f}, m.grazing = 1, m.roughness = 0.3f, m.brdf = kGgx;
-  return m;
-}
-
 // Calls visit(direction, solid angle) over the hemisphere.
 template <class Visit>
 void integrate(Visit visit) {

@@ -74,4 +74,15 @@ inline Material white() {
   return m;
 }
 
+// A unit vector at a cosine from z.
+inline Vec3d at(double cosine, double turn) {
+  const double sine = std::sqrt(1 - cosine * cosine);
+  return {sine * std::cos(turn), sine * std::sin(turn), cosine};
+}
+inline Material plastic() {
+  Material m;
+  m.diffuse = {0.5f, 0.5f, 0.5f}, m.specular = {0.1f, 0.1f, 0.1f}, m.grazing = 1, m.roughness = 0.3f, m.brdf = kGgx;
+  return m;
+}
+
 }  // namespace pocketray

@@ -268,40 +268,10 @@ TEST_CASE("clear_coat_lacks_what_the_plan_leaves_out") {
 // may err by nothing against all lights.
 TEST_CASE("clear_coat_is_lit_alike_by_all_ways") {
   GeneratedScene s;
-  const std::uint32_t materials[] = {add_material(&s, matte(0.6f)), add_material(&s, matte(0)),
-                                     add_material(&s, plastic())};
-  for (int i = 0; i < 3; ++i) {
-    const float x = static_cast<float>(2 * i - 3);
-    add_quad(&s, {x, -1, 0}, {x + 2, -1, 0}, {x + 2, 1, 0}, {x, 1, 0}, materials[i]);
-  }
-  Material lamp = matte(0);
-  lamp.emission = {6, 5, 4};
-  const std::uint32_t lamps = add_material(&s, lamp);
-  add_quad(&s, {-2, 1.2f, 0.5f}, {2, 1.2f, 0.5f}, {2, 1.2f, 1.5f}, {-2, 1.2f, 1.5f}, lamps);
-  add_box(&s, {-0.4f, -0.2f, 0.2f}, {0.4f, 0.1f, 0.5f}, materials[2]);
+  add_three_below_lamps(plastic(), &s);
   s.clear_coats = {coat_of(1, 0.3f), coat_of(0.8f, 0.5f), coat_of(1, 0.6f), {}};
   s.with_uvs = true;
-  aim(&s, {0.3f, -3, 3}, {0, 0, 0}, 40);
-  for (int many = 0; many < 2; ++many) {
-    for (int i = 0; i < 24 * many; ++i) {
-      s.lights.emplace_back();
-      s.lights.back().position = {0.3f * static_cast<float>(i) - 4, 0.1f * static_cast<float>(i % 5) - 2, 2};
-      s.lights.back().intensity = {0.3f, 0.2f, 0.1f};
-    }
-    s.bind();
-    Settings settings;
-    settings.width = 48, settings.height = 32, settings.light_tolerance = 0, settings.points_per_area_light = 4;
-    settings.cut_off_levels = 0;
-    const Picture tiles = trace_picture(s.scene, settings).picture;
-    CHECK(same_picture(tiles, trace_picture(s.scene, settings, nullptr, false).picture));
-    if (!many) continue;
-    settings.area_irradiance = AreaIrradiance::points;
-    const Picture all = render_picture(s.scene, settings);
-    settings.light_tolerance = 1e-6f;
-    const Picture selected = render_picture(s.scene, settings);
-    for (std::size_t i = 0; i < all.size(); ++i)
-      for (int c = 0; c < 3; ++c) CHECK(selected[i][c] == doctest::Approx(all[i][c]).epsilon(1e-3));
-  }
+  check_lit_alike_by_all_ways(&s);
 }
 
 // Goal: a coat shows lamps so close that they give their light in closed form. Method: the mean of black and dark
