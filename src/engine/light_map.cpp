@@ -144,9 +144,7 @@ bool add_to_row(void* context, std::uint32_t thread, std::uint32_t row) {
       if (!find_surface(tracer, rows.first_hits, sample, column, row, &s)) continue;
       if (!place_in_map(rows.map, frame.view.camera, rows.is_of_frame, column, row, s.point, &place)) continue;
       if (!light_at(rows.map, s, place, &light)) continue;
-      Vec3 more = s.diffuse * (light - indirect_light(tracer, s));
-      if (has(frame.mask, Effect::clear_coat)) more = more * s.coat.passes;
-      added += more;
+      added += s.diffuse * (light - indirect_light(tracer, s));
     }
     Vec3* pixel = &renderer->image[std::size_t(row) * frame.settings.width + column];
     *pixel = max(*pixel + added * share, Vec3{0, 0, 0});

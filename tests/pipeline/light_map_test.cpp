@@ -98,6 +98,50 @@ TEST_CASE("light_map_of_the_own_light_changes_nothing") {
   }
 }
 
+// Goal: light under coats and sheens is attenuated once. Method: ambient light of .4 and a map of .8, against a picture
+// of ambient light of .8; without lobes, which reflect the surroundings, too.
+TEST_CASE("light_map_lights_what_is_under_layers") {
+  auto made = [](float ambient) {
+    auto s = std::make_unique<GeneratedScene>();
+    Material base;
+    base.diffuse = {0.6f, 0.5f, 0.4f};
+    for (int i = 0; i < 3; ++i) {
+      const float x = static_cast<float>(2 * i - 3);
+      add_quad(s.get(), {x, -1, 0}, {x + 2, -1, 0}, {x + 2, 1, 0}, {x, 1, 0}, add_material(s.get(), base));
+    }
+    s->clear_coats.resize(3), s->sheens.resize(3);
+    for (int i : {0, 2}) s->clear_coats[static_cast<std::size_t>(i)].strength = 1;
+    for (int i : {1, 2}) {
+      Sheen& sheen = s->sheens[static_cast<std::size_t>(i)];
+      sheen.color = {0.8f, 0.8f, 0.8f}, sheen.roughness = sheen.roughness_low = 0.4f;
+    }
+    s->lights.resize(1);
+    s->lights[0].intensity = {0, 0, 0};
+    s->scene.info.ambient = {ambient, ambient, ambient};
+    aim(s.get(), {0.5f, -3, 2}, {0, 0, 0}, 40);
+    s->bind();
+    return s;
+  };
+  const std::unique_ptr<GeneratedScene> dim = made(0.4f), bright = made(0.8f);
+  Settings settings = settings_of(Effect::ambient);
+  settings.forced_off = bit(Effect::specular) | bit(Effect::mirror) | bit(Effect::ambient_gloss);
+  const std::unique_ptr<TestRenderer> device = make_renderer(dim->scene, settings),
+                                      light = make_renderer(bright->scene, settings),
+                                      wanted = make_renderer(bright->scene, settings);
+  const std::vector<Hit> hits = traced(&device->renderer);
+  const Picture before = picture_of(device->renderer);
+  traced(&wanted->renderer);
+  const auto owned = map_of(&light->renderer, &device->renderer, hits, 4);
+  add_mapped_light(&device->renderer, hits.data(), owned->map, 0, settings.height);
+  std::uint32_t brighter = 0;
+  for (std::size_t k = 0; k < before.size(); ++k) {
+    brighter += before[k].x > 0 && device->renderer.image[k].x > 1.5f * before[k].x;
+    for (int c = 0; c < 3; ++c)
+      REQUIRE(device->renderer.image[k][c] == doctest::Approx(wanted->renderer.image[k][c]).epsilon(1e-4));
+  }
+  CHECK(brighter > 500);
+}
+
 // Goal: mapped pixels of rows that others trace show the same surfaces.
 TEST_CASE("light_map_of_rows_not_traced_here_shows_the_same") {
   for (const char* scene : {"cornell", "seesaw"}) {
