@@ -198,9 +198,8 @@ void add_bake_command(Command program, int* exit_status) {
   add_environment_option(command, &options->environment);
   command.add_flag("--radiosity", options->radiosity, "store light between surfaces, whatever it takes")
       .details(
-          "Lit rooms get it without this, unless it would take more than a minute or 2 MiB. It costs the device "
-          "little. "
-          "The pose is that of time 0.");
+          "Lit rooms get it without this, unless it would take more than a minute or 2 MiB. It costs "
+          "devices little. The pose is that of time 0.");
   command.add_flag("--no-radiosity", options->no_radiosity, "store no light between surfaces")
       .excludes(command.get_option("--radiosity"), "it asks for radiosity");
   command.add_option("--patches N", options->patch_count, "with --radiosity: patches that exchange light")

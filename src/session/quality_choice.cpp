@@ -43,11 +43,15 @@ Status find_level_settings(const CommonOptions& o, const SceneSource& source, Re
   LevelMeaning levels[kQualityLevelCount];
   find_levels(o.scene, source, renderer, levels);
   for (int level = 0; level < kQualityLevelCount; ++level) {
-    Settings all = with_candidate(given, levels[level].candidate);
+    const Settings alone = with_candidate(given, levels[level].candidate);
+    Settings all = alone;
     for (int i = 0; i < kSettingCount; ++i)
       if (is_given(o.settings.options[i], kSettingList[i], given))
         kSettingList[i].field.set(&all, kSettingList[i].field.get(given));
-    if (all.samples_per_pixel > 1) all.edge_samples = given.edge_samples;  // which several samples leave out
+    // The level asks for no effect that given settings turn off.
+    const EffectMask lost = plan_effects(renderer->scene, alone).mask & ~plan_effects(renderer->scene, all).mask;
+    for (const SettingRow& row : kSettingList)
+      if (row.effects & lost) row.field.set(&all, row.field.get(given));
     settings[level] = all;
   }
   return success();

@@ -54,7 +54,7 @@ struct RadiosityForecast {
   double seconds = 0;  // on this machine, with the options' threads
 };
 
-// Like size_radiosity(), and times a sample of the exchange. Takes a tenth of the solution's time or less, but half a
+// Calls size_radiosity() and times a sample of the exchange. Takes a tenth of the solution's time or less, but half a
 // second where that is short.
 Status forecast_radiosity(const FrameData& frame, const RadiosityOptions& options, RadiosityForecast* forecast);
 

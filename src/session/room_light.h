@@ -18,7 +18,7 @@ bool calls_for_radiosity(const Scene& scene);
 // `identity` the scene's content_hash(). Fails on Ctrl-C.
 Status find_room_light(const std::string& name, const ContentHash& identity, std::uint32_t threads,
                        std::size_t bytes_max, Scene* scene, SolvedRadiosity* solved);
-// The same for a scene that was just loaded. Its radiosity takes at most a quarter of the memory left.
+// Calls find_room_light() for a scene that was just loaded; its radiosity takes at most a quarter of the memory left.
 Status light_room(const std::string& name, Renderer* renderer, SceneSource* source, SceneStorage* storage);
 
 }  // namespace pocketray
