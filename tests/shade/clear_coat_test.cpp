@@ -4,25 +4,16 @@
 #include "brdf/brdf_list.h"
 #include "indirect/environment.h"
 #include "shade/cell.h"
-#include "shade_helpers.h"
+#include "sunlit_sheet.h"
 #include "support/test_environment.h"
 
 using namespace pocketray;
 
 namespace {
 
-const Vec3 kPoint = {0.1f, 0.2f, 0};
-const Vec3 kSun = {0.3f, 0.5f, 1};
-
 double fresnel_of(double cosine) { return 0.04 + 0.96 * std::pow(1 - std::fabs(cosine), 5); }
 double mirror_share(double r) { return r < 0.3 ? (1 - r / 0.3) * (1 - r / 0.3) : 0; }
 
-Material plastic() {
-  Material m;
-  m.diffuse = {0.5f, 0.4f, 0.3f}, m.specular = {0.05f, 0.06f, 0.07f}, m.grazing = 1;
-  m.brdf = kGgx, m.roughness = 0.4f;
-  return m;
-}
 Material shiny() {
   Material m;
   m.diffuse = {0.2f, 0.3f, 0.4f}, m.specular = {0.5f, 0.4f, 0.3f}, m.exponent = 30;
@@ -35,25 +26,13 @@ ClearCoat coat_of(float strength, float roughness) {
   return coat;
 }
 
-// A double-sided sheet in the plane z = 0 under a sun, its coordinates u along x and v along y.
-struct Sheet {
-  GeneratedScene scene;
-  Sheet(const Material& base, const ClearCoat& coat, bool lit = true) {
-    add_sheet(&scene, 0, add_material(&scene, base), false, 10);
-    scene.with_uvs = true;
+struct Sheet : SunlitSheet {
+  Sheet(const Material& base, const ClearCoat& coat, bool lit = true) : SunlitSheet(base, lit) {
     scene.clear_coats = {coat};
-    scene.lights.resize(1);
-    scene.lights[0].kind = LightKind::directional;
-    scene.lights[0].direction = -normalize(kSun);
-    if (!lit) scene.lights[0].intensity = {0, 0, 0};
   }
   ClearCoat& coat() { return scene.clear_coats[0]; }
-  std::uint32_t texture(int r, int g, int b) { return add_texture(&scene, 1, 1, {{r, g, b, 255}}); }
-  // A ceiling far above that shows a radiance; half of one lets the sun through.
   void add_ceiling(float radiance, bool half = false) {
-    const float right = half ? 0 : 400;
-    add_quad(&scene, {-400, 400, 40}, {right, 400, 40}, {right, -400, 40}, {-400, -400, 40},
-             add_material(&scene, unlit(radiance)));
+    add_ceiling_to_sheet(radiance, half);
     scene.clear_coats.emplace_back();
   }
 };

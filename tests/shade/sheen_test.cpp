@@ -8,23 +8,14 @@
 #include "brdf/clear_coat.h"
 #include "indirect/environment.h"
 #include "shade/cell.h"
-#include "shade_helpers.h"
+#include "sunlit_sheet.h"
 #include "support/test_environment.h"
 
 using namespace pocketray;
 
 namespace {
 
-const Vec3 kPoint = {0.1f, 0.2f, 0};
-const Vec3 kSun = {0.3f, 0.5f, 1};
 const Vec3 kColor = {0.8f, 0.5f, 0.3f};
-
-Material plastic() {
-  Material m;
-  m.diffuse = {0.5f, 0.4f, 0.3f}, m.specular = {0.05f, 0.06f, 0.07f}, m.grazing = 1;
-  m.brdf = kGgx, m.roughness = 0.4f;
-  return m;
-}
 
 Sheen sheen_of(const Vec3& color, float roughness) {
   Sheen sheen;
@@ -32,24 +23,11 @@ Sheen sheen_of(const Vec3& color, float roughness) {
   return sheen;
 }
 
-// A double-sided sheet in the plane z = 0 under a sun, its coordinates u along x and v along y.
-struct Sheet {
-  GeneratedScene scene;
-  Sheet(const Material& base, const Sheen& sheen, bool lit = true) {
-    add_sheet(&scene, 0, add_material(&scene, base), false, 10);
-    scene.with_uvs = true;
-    scene.sheens = {sheen};
-    scene.lights.resize(1);
-    scene.lights[0].kind = LightKind::directional;
-    scene.lights[0].direction = -normalize(kSun);
-    if (!lit) scene.lights[0].intensity = {0, 0, 0};
-  }
+struct Sheet : SunlitSheet {
+  Sheet(const Material& base, const Sheen& sheen, bool lit = true) : SunlitSheet(base, lit) { scene.sheens = {sheen}; }
   Sheen& sheen() { return scene.sheens[0]; }
-  std::uint32_t texture(int r, int g, int b, int a = 255) { return add_texture(&scene, 1, 1, {{r, g, b, a}}); }
-  // A ceiling far above that shows a radiance.
   void add_ceiling(float radiance) {
-    add_quad(&scene, {-400, 400, 40}, {400, 400, 40}, {400, -400, 40}, {-400, -400, 40},
-             add_material(&scene, unlit(radiance)));
+    add_ceiling_to_sheet(radiance);
     scene.sheens.emplace_back();
   }
 };
