@@ -151,10 +151,10 @@ void end_rows(Renderer* renderer) {
 
 void make_history(Renderer* renderer) {
   if (!renderer->history.state.planned) return;
-  make_coherence(renderer->frame,
-                 coherence_plan(renderer->settings, renderer->lights.point_count_max, renderer->lights.polygons.count,
-                                recolorable_count(*renderer)),
-                 &renderer->memory.persistent, &renderer->memory.frame, &renderer->history.coherence);
+  make_coherence(
+      renderer->frame,
+      coherence_plan(renderer->memory.plan.planned_for, renderer->lights.polygons.count, recolorable_count(*renderer)),
+      &renderer->memory.persistent, &renderer->memory.frame, &renderer->history.coherence);
 }
 
 void begin_history(Renderer* renderer, const FrameTask& task) {

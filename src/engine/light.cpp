@@ -95,6 +95,7 @@ void light_scene(Renderer* renderer) {
     place_lights(lights, opened_materials(*renderer), renderer->lights.points, &renderer->frame);
     CHECK_LE(renderer->frame.lights.points.count, renderer->lights.points.count);
     if (has(renderer->effects.mask, Effect::area_light)) {
+      place_sample_points(opened_materials(*renderer), renderer->lights.sample_points, &renderer->frame);
       place_point_groups(renderer->lights.point_groups, renderer->lights.point_order, renderer->lights.point_place,
                          &renderer->frame);
       place_light_polygons(opened_materials(*renderer), renderer->lights.polygons, &renderer->frame);

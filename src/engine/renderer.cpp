@@ -198,6 +198,8 @@ Status build_renderer_unexposed(Renderer* renderer) {
         new (arena_array<EnvironmentLights>(&renderer->memory.persistent, 1).data) EnvironmentLights();
   if (renderer->lights.points.count)
     renderer->lights.points = arena_array<LightPoint>(&renderer->memory.persistent, renderer->lights.points.count);
+  if (const std::uint32_t points = renderer->memory.plan.planned_for.sample_points)
+    renderer->lights.sample_points = arena_array<LightPoint>(&renderer->memory.persistent, points);
   if (has_point_groups(renderer->settings, renderer->effects.mask)) {
     const std::uint32_t points = renderer->lights.point_count_max;
     renderer->lights.point_groups = arena_array<PointGroup>(&renderer->memory.persistent, points);

@@ -39,7 +39,7 @@ struct RendererAccel {
 
 // Memory for the frame's lights, and what they were placed for.
 struct RendererLights {
-  Array<LightPoint> points;
+  Array<LightPoint> points, sample_points;
   std::uint32_t point_count_max = 0;  // planned
   std::uint32_t selected_max = 0;     // likewise if source selection is planned, otherwise 0
   std::uint32_t count_max = 0;        // lights that may be set later; their points are planned

@@ -76,8 +76,9 @@ void place_on_emitter(const Emitter& e, const UnitCell& cell, std::uint32_t* tri
   if (!e.parallelogram) {
     // Points (√x(1 − y), √xy) are uniform if x and y are [Turk 1990, "Generating random points in triangles", method
     // 1]; √x is averaged over the cell.
-    double begin = cell.x_begin * std::sqrt(cell.x_begin), end = cell.x_end * std::sqrt(cell.x_end);
-    double root = 2 * (end - begin) / (3 * (cell.x_end - cell.x_begin));
+    const double begin = cell.x_begin * std::sqrt(cell.x_begin), end = cell.x_end * std::sqrt(cell.x_end);
+    const double width = cell.x_end - cell.x_begin;
+    const double root = width > 0 ? 2 * (end - begin) / (3 * width) : std::sqrt(cell.x_begin);
     *u = static_cast<float>(root * (1 - cell.y));
     *v = static_cast<float>(root * cell.y);
   } else {  // a + x(b − a) + y(d − a), with c = b + d − a
@@ -216,9 +217,17 @@ void keep_off_edges(float* u, float* v) {
   *u += (1 / 3.0f - *u) * (3 * kLeast), *v += (1 / 3.0f - *v) * (3 * kLeast);
 }
 
+// Returns the part of a cell that a set's point stands for; sets divide cells as samples divide a pixel.
+UnitCell part_of(const UnitCell& cell, const PointSet& set) {
+  if (set.count == 1) return cell;
+  const double width = (cell.x_end - cell.x_begin) / set.count, begin = cell.x_begin + set.index * width;
+  const double up = static_cast<double>(rook_point(set.index, set.count).y) - 0.5;
+  return {begin, begin + width, cell.y + up * cell.height, cell.height};
+}
+
 // Places the points of the shares that lie entirely within a slice.
 void place_whole_shares(const FrameData& frame, const Emitter& e, const LampSlice& slice, double area,
-                        LightPoint* points) {
+                        const PointSet& set, LightPoint* points) {
   CHECK(slice.whole);
   const double width = slice.x_end - slice.x_begin;
   for (std::uint32_t j = 0; j < slice.share_count; ++j) {
@@ -226,34 +235,24 @@ void place_whole_shares(const FrameData& frame, const Emitter& e, const LampSlic
     cell.x_begin = slice.x_begin + cell.x_begin * width, cell.x_end = slice.x_begin + cell.x_end * width;
     std::uint32_t triangle;
     float u, v;
-    place_on_emitter(e, cell, &triangle, &u, &v);
+    place_on_emitter(e, part_of(cell, set), &triangle, &u, &v);
     points[slice.share + j] = point_on(frame, e, triangle, u, v, area);
   }
 }
 
-}  // namespace
-
-double lamp_area(const FrameData& frame, const Lamp& lamp) {
-  double total = 0;
-  each_emitter(frame, lamp, [&](const Emitter& e) { total += e.area; });
-  return total;
-}
-
-// A share that spans several emitters is represented by the point of its own surface nearest to its centroid. If the
-// centroid lies on another share, as it may in a flat lamp, it is the point itself: flat lamps keep their centre.
-std::uint32_t place_area_light(const FrameData& frame, const Lamp& lamp, LightPoint* points) {
+// Places the points of shares that span several slices: each at the point of its own surface nearest to its centroid.
+// If the centroid lies on another share, as it may in a flat lamp, it is the point itself: flat lamps keep their
+// centre.
+void place_centroids(const FrameData& frame, const Lamp& lamp, double total, LightPoint* points) {
   const std::uint32_t n = frame.settings.points_per_area_light;
-  CHECK(n >= 1 && n <= kPointsPerAreaLightMax);
-  const double total = lamp_area(frame, lamp);
-  if (!(total > 0)) return 0;
   const double area = total / n;
-  // 1. Centroids of the shares that span several slices.
+  // 1. Centroids.
   for (std::uint32_t i = 0; i < n; ++i) points[i].position = {0, 0, 0};
   each_slice(frame, lamp, total, n, [&](const Emitter& e, const LampSlice& slice) {
-    if (slice.whole) return place_whole_shares(frame, e, slice, area, points);
+    if (slice.whole) return;
     std::uint32_t triangle;
     float u, v;
-    place_on_emitter(e, {slice.x_begin, slice.x_end, 0.5}, &triangle, &u, &v);
+    place_on_emitter(e, {slice.x_begin, slice.x_end, 0.5, 1}, &triangle, &u, &v);
     points[slice.share].position += surface_point(frame, triangle, u, v) * static_cast<float>(slice.share_part);
   });
   // 2. Nearest points to them: on the share's own surface or, if the centroid is not on it, on the whole lamp.
@@ -279,6 +278,48 @@ std::uint32_t place_area_light(const FrameData& frame, const Lamp& lamp, LightPo
     approach(frame, e, &nearest);
   });
   if (share != kNone) settle(share);
+}
+
+// Places the points of shares that span several slices on the part of each share that the set's point stands for.
+void place_parts(const FrameData& frame, const Lamp& lamp, double total, const PointSet& set, LightPoint* points) {
+  const std::uint32_t n = frame.settings.points_per_area_light;
+  const Vec2 place = rook_point(set.index, set.count);
+  const double wanted = static_cast<double>(place.x);
+  std::uint32_t share = kNone;
+  double passed = 0;  // fraction of the share
+  each_slice(frame, lamp, total, n, [&](const Emitter& e, const LampSlice& slice) {
+    if (slice.whole) return;
+    if (slice.share != share) share = slice.share, passed = 0;
+    const double along = std::min((wanted - passed) / slice.share_part, 1.0);
+    passed += slice.share_part;
+    if (!(along >= 0)) return;  // an earlier slice has it
+    const double x = slice.x_begin + along * (slice.x_end - slice.x_begin);
+    std::uint32_t triangle;
+    float u, v;
+    place_on_emitter(e, {x, x, static_cast<double>(place.y), 1}, &triangle, &u, &v);
+    keep_off_edges(&u, &v);
+    points[share] = point_on(frame, e, triangle, u, v, total / n);
+  });
+}
+
+}  // namespace
+
+double lamp_area(const FrameData& frame, const Lamp& lamp) {
+  double total = 0;
+  each_emitter(frame, lamp, [&](const Emitter& e) { total += e.area; });
+  return total;
+}
+
+std::uint32_t place_area_light(const FrameData& frame, const Lamp& lamp, const PointSet& set, LightPoint* points) {
+  const std::uint32_t n = frame.settings.points_per_area_light;
+  CHECK(n >= 1 && n <= kPointsPerAreaLightMax);
+  CHECK_LT(set.index, set.count);
+  const double total = lamp_area(frame, lamp);
+  if (!(total > 0)) return 0;
+  set.count == 1 ? place_centroids(frame, lamp, total, points) : place_parts(frame, lamp, total, set, points);
+  each_slice(frame, lamp, total, n, [&](const Emitter& e, const LampSlice& slice) {
+    if (slice.whole) place_whole_shares(frame, e, slice, total / n, set, points);
+  });
   return n;
 }
 

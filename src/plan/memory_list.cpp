@@ -9,6 +9,7 @@
 #include "shade/edges.h"
 #include "shade/interleaved.h"
 #include "shade/point_groups.h"
+#include "shade/sample_points.h"
 #include "shade/selective.h"
 #include "shade/source_selection.h"
 
@@ -44,6 +45,8 @@ constexpr MemoryRow kRows[] = {
        return need_or_0<EnvironmentLights>(plans_environment_lights(scene, in.settings));
      }},
     {"lights", kAlways, [](const Scene&, const In& in) { return need_or_0<LightPoint>(in.light_points); }},
+    {"lights", bit(Effect::area_light),
+     [](const Scene&, const In& in) { return need_or_0<LightPoint>(in.sample_points); }},
     {"lights", bit(Effect::area_light), groups_need},
     {"lights", bit(Effect::area_light),
      [](const Scene& scene, const In& in) { return need_or_0<LightPolygon>(light_polygon_count(scene, in.mask)); }},
@@ -60,6 +63,7 @@ Status find_need(const Scene& scene, const Settings& settings, EffectMask mask, 
   CHECK(in != nullptr);
   *in = {settings, mask};
   RETURN_IF_ERROR(light_point_count(scene, settings, in->mask, &in->light_points));
+  in->sample_points = sample_point_count(settings, in->mask, in->light_points);
   in->selected_points = has(in->mask, Effect::source_selection) ? in->light_points : 0;
   return success();
 }
@@ -67,7 +71,8 @@ Status find_need(const Scene& scene, const Settings& settings, EffectMask mask, 
 // Compares the lights' points, too: arenas round up, so that one more may take as many bytes.
 bool has_room(const MemoryRow& row, const Scene& scene, const PlannedFor& planned, const PlannedFor& in) {
   if (!(row.effects & in.mask)) return true;
-  return in.light_points <= planned.light_points && row.need(scene, in) <= row.need(scene, planned);
+  return in.light_points <= planned.light_points && in.sample_points <= planned.sample_points &&
+         row.need(scene, in) <= row.need(scene, planned);
 }
 
 // Names the setting whose planned value would fit.

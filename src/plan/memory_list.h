@@ -13,6 +13,7 @@ struct PlannedFor {
   Settings settings;
   EffectMask mask = 0;
   std::uint32_t light_points = 0;     // upper bound
+  std::uint32_t sample_points = 0;    // likewise of Lights::sample_points
   std::uint32_t selected_points = 0;  // from which source selection chooses; 0: it is off
 };
 

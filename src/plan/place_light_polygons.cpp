@@ -93,21 +93,25 @@ bool is_flat(const FrameData& frame, const Lamp& lamp, const LightPolygon& polyg
 
 // Sine of the margin around the polygon's plane, or above a horizon, beyond which neither its corners nor the lamp's
 // rounded points lie on the other side.
-double margin_of(const LightPolygon& polygon, const LightPoint* points, std::uint32_t count, double size) {
-  CHECK_GT(count, 0u);
+double margin_of(const LightPolygon& polygon, const FrameData& frame, std::uint32_t first_point, double size) {
   CHECK_GT(size, 0.0);
   double off = 0, largest = 0;
-  for (std::uint32_t i = 0; i < count; ++i) {
-    off = std::max(off, std::fabs(height_over(polygon, points[i].position)) / size +
-                            length(to_double(points[i].direction) - to_double(polygon.normal)));
-    largest = std::max(largest, static_cast<double>(max_component(abs(points[i].position))));
-  }
+  auto include = [&](const LightPoint* points) {
+    for (std::uint32_t i = 0; i < frame.settings.points_per_area_light; ++i) {
+      off = std::max(off, std::fabs(height_over(polygon, points[i].position)) / size +
+                              length(to_double(points[i].direction) - to_double(polygon.normal)));
+      largest = std::max(largest, static_cast<double>(max_component(abs(points[i].position))));
+    }
+  };
+  const Lights& lights = frame.lights;
+  include(&lights.points[first_point]);
+  for (std::uint32_t set = 0; set < lights.sample_points.count; set += lights.points.count)
+    include(&lights.sample_points[set + first_point]);
   constexpr double kEpsilon = std::numeric_limits<float>::epsilon();
   return 0x1p-9 + off + 16 * kEpsilon * (1 + largest / size);
 }
 
-bool make_polygon(const FrameData& frame, const Lamp& lamp, const LightPoint* points, std::uint32_t count,
-                  LightPolygon* polygon) {
+bool make_polygon(const FrameData& frame, const Lamp& lamp, std::uint32_t first_point, LightPolygon* polygon) {
   const Material& m = frame.scene->materials[lamp.material];
   if (m.emission_texture.texture != kNone && frame.scene->uvs.count) return false;
   Outline outline;
@@ -123,7 +127,7 @@ bool make_polygon(const FrameData& frame, const Lamp& lamp, const LightPoint* po
   std::frexp(size, &exponent);
   polygon->scale = static_cast<float>(std::ldexp(1.0, -exponent));
   CHECK(polygon->scale > 0 && std::isfinite(polygon->scale));
-  polygon->margin = static_cast<float>(margin_of(*polygon, points, count, size));
+  polygon->margin = static_cast<float>(margin_of(*polygon, frame, first_point, size));
   polygon->radiance = m.emission;
   polygon->two_sided = m.double_sided;
   return true;
@@ -156,7 +160,7 @@ void place_light_polygons(Array<const Material> lamps, Array<LightPolygon> polyg
     if (!(lamp_area(*frame, lamp) > 0)) return;  // it has no points
     CHECK_LT(i, count);
     LightPolygon polygon = {};
-    const bool is_polygon = make_polygon(*frame, lamp, &frame->lights.points[run.begin + i * n], n, &polygon);
+    const bool is_polygon = make_polygon(*frame, lamp, run.begin + i * n, &polygon);
     polygons[i++] = is_polygon ? polygon : LightPolygon{};
     any = any || is_polygon;
   });

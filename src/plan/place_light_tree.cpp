@@ -15,10 +15,17 @@ namespace {
 constexpr std::uint32_t kGroupMax = 16;
 
 struct TreeBuilder {
-  Array<const LightPoint> lights;
+  Array<const LightPoint> lights, sample_lights;  // as in Lights
   Array<LightNode> nodes;
   Array<std::uint32_t> order;
   std::uint32_t node_count = 0;
+
+  // Calls visit(point) for a light's points of all samples.
+  template <class Visit>
+  void each_point(std::uint32_t light, Visit visit) const {
+    visit(lights[light]);
+    for (std::uint32_t i = light; i < sample_lights.count; i += lights.count) visit(sample_lights[i]);
+  }
 };
 
 // Merges two lights: their total power, at the centre of their power.
@@ -41,7 +48,9 @@ void measure_group(TreeBuilder* b, LightNode* node) {
   node->right = kNone;
   for (std::uint32_t i = node->begin; i < node->end; ++i) {
     const LightPoint& light = b->lights[b->order[i]];
-    const float intensity = max_component(light.intensity);
+    float intensity = 0;
+    b->each_point(b->order[i],
+                  [&](const LightPoint& p) { intensity = std::max(intensity, max_component(p.intensity)); });
     node->mean = i == node->begin ? light : joined(node->mean, node->intensity, light, intensity);
     node->intensity = i == node->begin ? intensity : node->intensity + intensity;
   }
@@ -54,7 +63,8 @@ std::uint32_t build(TreeBuilder* b, std::uint32_t begin, std::uint32_t end) {
   LightNode* node = &b->nodes[index];
   node->begin = begin, node->end = end;
   node->box = empty_box();
-  for (std::uint32_t i = begin; i < end; ++i) node->box = merge(node->box, b->lights[b->order[i]].position);
+  for (std::uint32_t i = begin; i < end; ++i)
+    b->each_point(b->order[i], [&](const LightPoint& p) { node->box = merge(node->box, p.position); });
   if (end - begin <= kGroupMax) {
     measure_group(b, node);
     return index;
@@ -80,7 +90,7 @@ std::uint32_t build(TreeBuilder* b, std::uint32_t begin, std::uint32_t end) {
 void place_light_tree(Array<LightNode> nodes, Array<std::uint32_t> order, FrameData* frame) {
   CHECK(frame != nullptr);
   CHECK(frame->lights.points.count <= nodes.count && frame->lights.points.count <= order.count);
-  TreeBuilder b = {frame->lights.points, nodes, order};
+  TreeBuilder b = {frame->lights.points, frame->lights.sample_points, nodes, order};
   for (std::uint32_t i = 0; i < frame->lights.points.count; ++i) order[i] = i;
   for (int r = 0; r < frame->lights.run_count; ++r) {
     const LightRun& run = frame->lights.runs[r];

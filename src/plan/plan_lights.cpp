@@ -1,9 +1,12 @@
 #include "plan/plan_lights.h"
 
+#include <algorithm>
+
 #include "base/check.h"
 #include "base/limits.h"
 #include "plan/area_light.h"
 #include "shade/lights.h"
+#include "shade/sample_points.h"
 
 namespace pocketray {
 namespace {
@@ -54,7 +57,7 @@ void place_lights(Array<const Light> lights, Array<const Material> lamps, Array<
     std::uint32_t begin = count;
     if (kind == Effect::area_light) {
       each_lamp(*frame->scene, lamps,
-                [&](const Lamp& lamp) { count += place_area_light(*frame, lamp, points.data + count); });
+                [&](const Lamp& lamp) { count += place_area_light(*frame, lamp, {}, points.data + count); });
     } else {
       for (const Light& light : lights)
         if (effect_of(light.kind) == kind) points[count++] = to_point(light);
@@ -64,6 +67,27 @@ void place_lights(Array<const Light> lights, Array<const Material> lamps, Array<
       frame->lights.runs[frame->lights.run_count++] = {begin, count, find_light_sampler(kind), nullptr};
   }
   frame->lights.points = {points.data, count};
+}
+
+void place_sample_points(Array<const Material> lamps, Array<LightPoint> points, FrameData* frame) {
+  CHECK(frame != nullptr);
+  Lights& lights = frame->lights;
+  lights.sample_points = {};
+  const std::uint32_t sets = point_set_count(frame->settings, frame->mask);
+  if (sets == 0 || lights.run_count == 0) return;
+  const LightRun& run = lights.runs[lights.run_count - 1];
+  if (run.sample != find_light_sampler(Effect::area_light)) return;
+  CHECK_LE(std::uint64_t(sets) * lights.points.count, points.count);
+  for (std::uint32_t set = 0; set < sets; ++set) {
+    LightPoint* of_set = points.data + std::size_t(set) * lights.points.count;
+    std::copy_n(lights.points.data, run.begin, of_set);
+    std::uint32_t end = run.begin;
+    each_lamp(*frame->scene, lamps, [&](const Lamp& lamp) {
+      end += place_area_light(*frame, lamp, {set, sets}, of_set + end);
+    });
+    CHECK_EQ(end, lights.points.count);
+  }
+  lights.sample_points = {points.data, sets * lights.points.count};
 }
 
 }  // namespace pocketray

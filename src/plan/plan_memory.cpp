@@ -11,6 +11,7 @@
 #include "plan/place_light_polygons.h"
 #include "plan/resolve.h"
 #include "scene/animate.h"
+#include "shade/sample_points.h"
 
 namespace pocketray {
 namespace {
@@ -47,12 +48,12 @@ double megabytes(std::size_t bytes) { return static_cast<double>(bytes) / (1 << 
 
 }  // namespace
 
-CoherencePlan coherence_plan(const Settings& settings, std::uint32_t light_point_count, std::uint32_t area_light_count,
-                             std::uint32_t recolorable) {
+CoherencePlan coherence_plan(const PlannedFor& planned, std::uint32_t area_light_count, std::uint32_t recolorable) {
+  const Settings& settings = planned.settings;
   CoherencePlan plan;
   plan.width = settings.width, plan.height = settings.height;
   plan.samples = settings.samples_per_pixel + settings.edge_samples, plan.threads = settings.threads,
-  plan.light_points = light_point_count;
+  plan.light_points = planned.light_points, plan.sample_points = planned.sample_points;
   plan.area_lights = area_light_count, plan.recolorable = recolorable;
   plan.compensated = settings.compensation == Compensation::rays;
   plan.table_side = settings.coherence_table, plan.tables_only = settings.coherence_by_tables;
@@ -86,7 +87,8 @@ Status plan_memory_with(const Scene& scene, const Settings& settings, const Effe
   add_part(plan, "accelerator", ArenaKind::persistent, keep);
   add_part(plan, "pose", ArenaKind::persistent, moves ? pose_need(scene) : 0);
   scratch = std::max(scratch, indirect_need(scene, settings, prepared_methods(scene, settings, effects.mask)).scratch);
-  plan->planned_for = {settings, effects.mask, lights.points, lights.selected};
+  const std::uint32_t sample_points = sample_point_count(settings, effects.mask, lights.points);
+  plan->planned_for = {settings, effects.mask, lights.points, sample_points, lights.selected};
   for (const MemoryRow& row : memory_rows())
     add_part(plan, row.part, ArenaKind::persistent, row.need(scene, plan->planned_for));
   add_part(plan, "materials", ArenaKind::persistent,
@@ -98,9 +100,9 @@ Status plan_memory_with(const Scene& scene, const Settings& settings, const Effe
   add_part(plan, "radiance", ArenaKind::persistent, arena_need<Vec3>(pixel_count));
   if (with_coherence) {
     add_part(plan, "coherence", ArenaKind::persistent,
-             coherence_need(scene, effects.mask,
-                            coherence_plan(settings, lights.points, light_polygon_count(scene, effects.mask),
-                                           storage.recolorable)));
+             coherence_need(
+                 scene, effects.mask,
+                 coherence_plan(plan->planned_for, light_polygon_count(scene, effects.mask), storage.recolorable)));
     scratch = std::max(scratch, coherence_scratch_need(scene, effects.mask));
   }
   // A single build's scratch is free again before the first frame is shown, so output shares its part of the frame

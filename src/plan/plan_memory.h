@@ -57,8 +57,7 @@ struct OutputNeed {
 Status plan_memory(const Scene& scene, const Settings& settings, const EffectPlan& effects, const AccelInfo& accel,
                    const SceneStorage& storage, const PlannedLights& lights, const OutputNeed& output, MemoryPlan* plan,
                    const char** without_coherence = nullptr);
-CoherencePlan coherence_plan(const Settings& settings, std::uint32_t light_point_count, std::uint32_t area_light_count,
-                             std::uint32_t recolorable = 0);
+CoherencePlan coherence_plan(const PlannedFor& planned, std::uint32_t area_light_count, std::uint32_t recolorable = 0);
 
 // Plans the block of a device that only shows frames rendered elsewhere: it has only the output.
 Status plan_output_memory(const Settings& settings, const OutputNeed& output, MemoryPlan* plan);

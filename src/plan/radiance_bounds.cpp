@@ -171,7 +171,13 @@ float irradiance_bound(const FrameData& frame) {
       Effect kind = light.material != kNone                                       ? Effect::area_light
                     : run.sample == find_light_sampler(Effect::directional_light) ? Effect::directional_light
                                                                                   : Effect::point_light;
-      lamp += irradiance_bound(frame, light, kind, {light.position, light.position});
+      float point = irradiance_bound(frame, light, kind, {light.position, light.position});
+      for (std::uint32_t k = i; k < frame.lights.sample_points.count; k += frame.lights.points.count) {
+        const LightPoint& of_sample = frame.lights.sample_points[k];
+        if (kind == Effect::area_light)
+          point = std::max(point, irradiance_bound(frame, of_sample, kind, {of_sample.position, of_sample.position}));
+      }
+      lamp += point;
       const std::uint32_t points = run.polygons ? frame.settings.points_per_area_light : 1, next = i + 1 - run.begin;
       if (next % points) continue;
       if (run.polygons) lamp = std::max(lamp, lamp_bound(frame, run.polygons[next / points - 1], light));

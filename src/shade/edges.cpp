@@ -8,6 +8,7 @@
 #include "shade/even_points.h"
 #include "shade/filters.h"
 #include "shade/pixel.h"
+#include "shade/sample_points.h"
 #include "shade/tile.h"
 #include "shade/tile_shadows.h"
 
@@ -97,73 +98,101 @@ void want_tile(OpenWindow* window, std::uint32_t left, std::uint32_t top, std::u
   }
 }
 
-// Samples of pixels at edges, those of a pixel one after the other, to be traced together.
-struct EdgeSamples {
-  Tile tile;
+// Pixels at edges, whose samples are traced in packets: all samples of some pixels, or, where samples have light points
+// of their own, one sample of more pixels.
+struct EdgePixels {
+  std::uint32_t count = 0;
+  std::uint16_t column[kPacketMax], row[kPacketMax];
   Ray ray[kPacketMax];
   RayPacket packet;  // the rays; not set if they are traced one by one
   Hit hit[kPacketMax];
 };
 
+// Some samples of the pixels, those of a pixel one after the other.
+struct SampleRange {
+  std::uint32_t begin, count;  // of a pixel
+};
+
+// Pixels of several tiles share a packet up to this number; more are so far apart that their rays pass other boxes:
+// packets of up to 64 took 10 % more instructions (cornell, statue; 8 samples).
+constexpr std::uint32_t kPixelsTogether = 8;
+
+std::uint32_t samples_together(const FrameData& frame) {
+  return frame.lights.sample_points.count > 0 ? 1 : frame.settings.edge_samples;
+}
+
 bool traces_packets(const FrameData& frame) { return !frame.geometry.ray_by_ray && !frame.view.camera.orthographic; }
 
-void find_hits(Tracer* tracer, EdgeSamples* samples) {
-  CHECK(tracer->frame != nullptr && samples != nullptr);
+void find_hits(Tracer* tracer, const SampleRange& samples, EdgePixels* pixels) {
+  CHECK(tracer->frame != nullptr && pixels != nullptr);
   const FrameData& frame = *tracer->frame;
-  const Tile& tile = samples->tile;
-  const std::uint32_t of_pixel = frame.settings.edge_samples;
-  for (std::uint32_t i = 0; i < tile.count; ++i)
-    samples->ray[i] = pixel_ray(frame, tile.column[i], tile.row[i], rook_point(i % of_pixel, of_pixel));
+  const std::uint32_t count = pixels->count * samples.count;
+  CHECK_LE(count, kPacketMax);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const std::uint32_t k = i / samples.count, sample = samples.begin + i % samples.count;
+    pixels->ray[i] =
+        pixel_ray(frame, pixels->column[k], pixels->row[k], rook_point(sample, frame.settings.edge_samples));
+  }
   if (traces_packets(frame)) {
-    RayPacket& packet = samples->packet;
-    packet.origin = frame.view.camera.eye, packet.t_max = __builtin_inff(), packet.count = tile.count;
-    for (std::uint32_t i = 0; i < tile.count; ++i)
-      for (int axis = 0; axis < 3; ++axis) packet.direction[axis][i] = samples->ray[i].direction[axis];
-    frame.geometry.first_rays->closest_packet(frame.geometry.accel, packet, visible_filter(frame), samples->hit,
+    RayPacket& packet = pixels->packet;
+    packet.origin = frame.view.camera.eye, packet.t_max = __builtin_inff(), packet.count = count;
+    for (std::uint32_t i = 0; i < count; ++i)
+      for (int axis = 0; axis < 3; ++axis) packet.direction[axis][i] = pixels->ray[i].direction[axis];
+    frame.geometry.first_rays->closest_packet(frame.geometry.accel, packet, visible_filter(frame), pixels->hit,
                                               &tracer->stats);
   } else {
-    for (std::uint32_t i = 0; i < tile.count; ++i)
-      frame.geometry.first_rays->closest(frame.geometry.accel, samples->ray[i], visible_filter(frame), &samples->hit[i],
+    for (std::uint32_t i = 0; i < count; ++i)
+      frame.geometry.first_rays->closest(frame.geometry.accel, pixels->ray[i], visible_filter(frame), &pixels->hit[i],
                                          &tracer->stats);
   }
   if (frame.kept.first_hits)
-    for (std::uint32_t i = 0; i < tile.count; ++i)
-      keep_first_hit(tracer, 1 + i % of_pixel, tile.column[i], tile.row[i], samples->hit[i]);
+    for (std::uint32_t i = 0; i < count; ++i)
+      keep_first_hit(tracer, 1 + samples.begin + i % samples.count, pixels->column[i / samples.count],
+                     pixels->row[i / samples.count], pixels->hit[i]);
 }
 
-// Traces the samples and adds them to their pixels, which have the values of their centres.
-void add_samples(Tracer* tracer, EdgeSamples* samples, const PixelRows& image) {
+// Adds the samples, given their hits, to their pixels.
+void add_hits(Tracer* tracer, const SampleRange& samples, EdgePixels* pixels, const PixelRows& image) {
   const FrameData& frame = *tracer->frame;
-  const Tile& tile = samples->tile;
-  const std::uint32_t of_pixel = frame.settings.edge_samples;
-  if (tile.count == 0) return;
-  find_hits(tracer, samples);
   TileShadows shadows;
   const bool knows_shadows = traces_packets(frame) && frame.kernels.find_shadows != nullptr;
-  if (knows_shadows) frame.kernels.find_shadows(tracer, samples->packet, samples->hit, &shadows);
+  if (knows_shadows) frame.kernels.find_shadows(tracer, pixels->packet, pixels->hit, &shadows);
   tracer->tile_shadows = knows_shadows ? &shadows : nullptr;
-  for (std::uint32_t i = 0; i < tile.count; ++i) {
-    const std::uint32_t column = tile.column[i], row = tile.row[i];
-    Surface* s = samples->hit[i].triangle != kNoTriangle ? &shadows.surface[i] : nullptr;
+  for (std::uint32_t i = 0; i < pixels->count * samples.count; ++i) {
+    const std::uint32_t column = pixels->column[i / samples.count], row = pixels->row[i / samples.count];
+    Surface* s = pixels->hit[i].triangle != kNoTriangle ? &shadows.surface[i] : nullptr;
     observe_pixel(tracer, column, row);
-    if (s && !knows_shadows) frame.kernels.first_surface(frame, samples->ray[i], samples->hit[i], s);
+    if (s && !knows_shadows) frame.kernels.first_surface(frame, pixels->ray[i], pixels->hit[i], s);
     if (s && is_interleaved(frame.mask)) take_shared_light(tracer, column, row, s);
     tracer->tile_pixel = i;
     tracer->first_surface = s;
-    Vec3& pixel = image.at(column, row);
-    pixel += sample_radiance(tracer, samples->ray[i], samples->hit[i], s);
-    if ((i + 1) % of_pixel == 0) pixel = pixel * (1 / static_cast<float>(of_pixel + 1));
+    image.at(column, row) += sample_radiance(tracer, pixels->ray[i], pixels->hit[i], s);
   }
   tracer->first_surface = nullptr;
   tracer->tile_shadows = nullptr;
-  samples->tile.count = 0;
+}
+
+// Adds all samples of the pixels, which have the values of their centres, and takes the means.
+void add_samples(Tracer* tracer, EdgePixels* pixels, const PixelRows& image) {
+  const FrameData& frame = *tracer->frame;
+  const std::uint32_t all = frame.settings.edge_samples, together = samples_together(frame);
+  for (std::uint32_t begin = 0; begin < all && pixels->count > 0; begin += together) {
+    use_points_of(tracer, 1 + begin);
+    find_hits(tracer, {begin, together}, pixels);
+    add_hits(tracer, {begin, together}, pixels, image);
+  }
+  for (std::uint32_t i = 0; i < pixels->count; ++i) {
+    Vec3& pixel = image.at(pixels->column[i], pixels->row[i]);
+    pixel = pixel * (1 / static_cast<float>(all + 1));
+  }
+  pixels->count = 0;
 }
 
 // Writes a tile's pixels in the mask to the image, and lists those at edges.
-void take_tile(const OpenWindow& window, std::uint32_t left, std::uint32_t top, std::uint64_t mask,
-               EdgeSamples* samples, const PixelRows& image) {
-  const std::uint32_t of_pixel = window.settings().edge_samples;
-  const bool keeps_hits = window.tracer->frame->kept.first_hits != nullptr && of_pixel > 0;
+void take_tile(const OpenWindow& window, std::uint32_t left, std::uint32_t top, std::uint64_t mask, EdgePixels* pixels,
+               const PixelRows& image) {
+  const std::uint32_t together = samples_together(*window.tracer->frame);
+  const bool keeps_hits = window.tracer->frame->kept.first_hits != nullptr && window.settings().edge_samples > 0;
   DisplayBlock block;
   const bool has_edges = fill_block(window, left, top, &block);
   if (has_edges) display(&block);
@@ -175,8 +204,9 @@ void take_tile(const OpenWindow& window, std::uint32_t left, std::uint32_t top, 
       if (keeps_hits) keep_first_hit(window.tracer, 1, column, row, {0, 0, 0, kNotTraced});
       continue;
     }
-    for (std::uint32_t i = 0; i < of_pixel; ++i) add_pixel(column, row, &samples->tile);
-    if (samples->tile.count + of_pixel > kPacketMax) add_samples(window.tracer, samples, image);
+    pixels->column[pixels->count] = static_cast<std::uint16_t>(column);
+    pixels->row[pixels->count++] = static_cast<std::uint16_t>(row);
+    if ((pixels->count + 1) * together > kPacketMax) add_samples(window.tracer, pixels, image);
   }
 }
 
@@ -193,7 +223,7 @@ void trace_edges(Tracer* tracer, const TileStrip& strip, const PixelRows& image)
   CHECK(strip.row_count >= 1 && strip.row_count <= kTileRows);
   AlignedTiles tiles;
   align_tiles(strip, &tiles);
-  EdgeSamples samples;
+  EdgePixels pixels;
   for (std::uint32_t r = 0; r < 2; ++r) {
     if (std::all_of(tiles.mask[r], tiles.mask[r] + tiles.tile_count, [](std::uint64_t mask) { return mask == 0; }))
       continue;
@@ -203,8 +233,11 @@ void trace_edges(Tracer* tracer, const TileStrip& strip, const PixelRows& image)
       want_tile(&window, tiles.column + c * kTileSide, top, tiles.mask[r][c]);
     trace_wanted(window);
     for (std::uint32_t c = 0; c < tiles.tile_count; ++c)
-      if (tiles.mask[r][c]) take_tile(window, tiles.column + c * kTileSide, top, tiles.mask[r][c], &samples, image);
-    add_samples(tracer, &samples, image);
+      if (tiles.mask[r][c]) {
+        take_tile(window, tiles.column + c * kTileSide, top, tiles.mask[r][c], &pixels, image);
+        if (pixels.count >= kPixelsTogether) add_samples(tracer, &pixels, image);
+      }
+    add_samples(tracer, &pixels, image);
   }
 }
 

@@ -51,7 +51,7 @@ UnitCell equal_cell(std::uint32_t index, std::uint32_t count) {
   }
   CHECK(begin <= index && index < end && end <= count);
   double width = end - begin, column = index - begin;
-  return {column / width, (column + 1) / width, (static_cast<double>(begin) + end) / (2.0 * count)};
+  return {column / width, (column + 1) / width, (static_cast<double>(begin) + end) / (2.0 * count), width / count};
 }
 
 }  // namespace pocketray

@@ -13,9 +13,9 @@ namespace pocketray {
 // levels as there are points. Among all such sets, it has the least error for edges in any direction.
 Vec2 rook_point(std::uint32_t index, std::uint32_t count);
 
-// A cell of the unit square: its horizontal extent and the middle of its height.
+// A cell of the unit square: its horizontal extent, and the middle of its height.
 struct UnitCell {
-  double x_begin, x_end, y;
+  double x_begin, x_end, y, height;
 };
 // Cell `index` of `count` cells of equal area that tile the unit square: round(√count) rows of equal cells, the numbers
 // per row differing by at most one. A square number gives a grid. Sums over the centroids of the cells are exact for

@@ -14,6 +14,7 @@ struct LightRun {
 
 struct Lights {
   Array<const LightPoint> points;
+  Array<const LightPoint> sample_points;  // as many for each sample that has its own, see sample_points.h
   LightRun runs[4];
   int run_count = 0;
   LightTree tree = {};  // set with Effect::source_selection

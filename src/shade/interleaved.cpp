@@ -5,6 +5,7 @@
 #include "base/check.h"
 #include "shade/even_points.h"
 #include "shade/pixel.h"
+#include "shade/sample_points.h"
 #include "shade/shared_pixels.h"
 #include "shade/tile.h"
 #include "shade/tile_shadows.h"
@@ -299,6 +300,7 @@ void trace_sample(Tracer* tracer, const SharedTile& tile, std::uint32_t sample, 
   const PixelList& wanted = tile.lists->wanted;
   FirstHits first;
   PixelList lacking;
+  use_points_of(tracer, sample);
   for (std::uint32_t i = 0; i < tile.lists->others.count; ++i)
     if (!is_known(region->pixel[tile.lists->others.row[i] * kRegionSide + tile.lists->others.column[i]]))
       lacking.add(tile.lists->others.column[i], tile.lists->others.row[i]);

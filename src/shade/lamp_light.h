@@ -12,7 +12,7 @@ namespace pocketray {
 struct SeenLamp {
   const LightRun& run;
   const LightPolygon& polygon;
-  std::uint32_t first, end;  // its points in frame.lights.points
+  std::uint32_t first, end;  // its light points
   const TilePolygon* tile;   // null: its tile knows nothing of it
   PolygonView view;
   Vec3 irradiance;  // of the whole lamp; set if the view is near
@@ -49,7 +49,7 @@ template <EffectMask mask>
   float all = 0, highest = 0;
   for (std::uint32_t i = lamp.first; i < lamp.end; ++i) {
     LightSample sample;
-    if (!lights_up(frame, s, lamp.run, frame.lights.points[i], &sample)) continue;
+    if (!lights_up(frame, s, lamp.run, tracer->light_points[i], &sample)) continue;
     const float share = max_component(sample.irradiance) * dot(s.normal, sample.direction);
     all += share;
     if (lamp.view.highest > 0) highest = std::max(highest, dot(s.normal, sample.to_light) * lamp.polygon.scale);
@@ -95,7 +95,7 @@ template <EffectMask mask>
   auto visibility = [&](std::uint32_t i) { return shadow<mask>(tracer, s, lamp.run, i, nullptr, to.at_first_hit); };
   auto share = [&](std::uint32_t i) {
     LightSample sample;
-    return lights_up(frame, s, lamp.run, frame.lights.points[i], &sample)
+    return lights_up(frame, s, lamp.run, tracer->light_points[i], &sample)
                ? max_component(sample.irradiance) * dot(s.normal, sample.direction)
                : 0;
   };
@@ -149,7 +149,7 @@ template <EffectMask mask>
   LobePoints p;
   for (std::uint32_t i = lamp.first; i < lamp.end; ++i) {
     LightSample sample;
-    if (!lights_up(frame, s, lamp.run, frame.lights.points[i], &sample)) continue;
+    if (!lights_up(frame, s, lamp.run, tracer->light_points[i], &sample)) continue;
     const Vec3& to_light = sample.direction;
     const float arriving = max_component(sample.irradiance), cosine = dot(s.normal, to_light);
     const float share = arriving * cosine;
@@ -243,7 +243,7 @@ template <EffectMask mask>
   const FrameData& frame = *tracer->frame;
   const std::uint32_t count = frame.settings.points_per_area_light;
   for (std::uint32_t lamp = 0, first = run.begin; first < run.end; ++lamp, first += count) {
-    const LightPoint& point = frame.lights.points[first];
+    const LightPoint& point = tracer->light_points[first];
     if (run.polygons[lamp].corner_count && is_own(frame, to.surface, point) &&
         is_unlit_by_own(frame, to.surface, point))
       continue;

@@ -4,7 +4,7 @@
 
 namespace pocketray {
 
-// Samples frame.lights.points[i]; `kept` is what its tile knows of it, or null. Returns false if no light arrives.
+// Samples light point i; `kept` is what its tile knows of it, or null. Returns false if no light arrives.
 template <EffectMask mask>
 [[gnu::always_inline]] inline bool sample_point(const Tracer& tracer, const LitSurface& to, const LightRun& run,
                                                 std::uint32_t i, LightSample* sample, const TileSample** kept) {
@@ -13,13 +13,13 @@ template <EffectMask mask>
   if (to.at_first_hit && is_sampled(tracer, i, kept)) {
     if (!*kept) return false;
     sample->direction = (*kept)->direction, sample->irradiance = (*kept)->irradiance;
-  } else if (!lights_up(frame, to.surface, run, frame.lights.points[i], sample)) {
+  } else if (!lights_up(frame, to.surface, run, tracer.light_points[i], sample)) {
     return false;
   }
   return has(mask, Effect::shadow) || !is_below(to.surface, sample->direction);
 }
 
-// Adds the light of frame.lights.points[i], which belongs to the run.
+// Adds the light of point i, which belongs to the run.
 template <EffectMask mask>
 [[gnu::always_inline]] inline void add_light_point(Tracer* tracer, const LitSurface& to, const LightRun& run,
                                                    std::uint32_t i, Vec3* sum) {

@@ -8,8 +8,8 @@ namespace pocketray {
 
 // A group of lights of one kind.
 struct LightNode {
-  Box box;                   // bounds of their positions
-  float intensity;           // sum over the brightest channel of each
+  Box box;                   // bounds of their positions, of all samples
+  float intensity;           // sum over the brightest channel of each, in any sample
   std::uint32_t begin, end;  // range in LightTree::order
   std::uint32_t right;       // second half; the first half is the next node; kNone: a leaf
   LightPoint mean;           // a light that stands for all of them

@@ -21,14 +21,14 @@ class PointTester {
 
   bool is_probe(std::uint32_t point, Ray* ray) const {
     LightSample sample;
-    if (!pocketray::is_probe(frame_, surface_, run(), frame_.lights.points[first_ + point], &sample)) return false;
+    if (!pocketray::is_probe(frame_, surface_, run(), tracer_->light_points[first_ + point], &sample)) return false;
     *ray = {safe_origin(surface_, 1), sample.to_light, sample.t_max};
     return true;
   }
   // Tests a point that lights up the surface from below its triangle's plane.
   bool test_from_below(std::uint32_t point) {
     LightSample sample;
-    CHECK(lights_up(frame_, surface_, run(), frame_.lights.points[first_ + point], &sample));
+    CHECK(lights_up(frame_, surface_, run(), tracer_->light_points[first_ + point], &sample));
     return trace(point, {curved_origin(frame_, surface_), sample.to_light, sample.t_max});
   }
 
@@ -70,7 +70,7 @@ class PointTester {
 
   bool trace(std::uint32_t point, const Ray& ray) {
     ++tracer_->rays[static_cast<int>(RayKind::shadow)];
-    const ShadowContext context = {&frame_, &frame_.lights.points[first_ + point]};
+    const ShadowContext context = {&frame_, &tracer_->light_points[first_ + point]};
     const HitFilter opaque = {frame_.filters.accept_opaque, &context, frame_.filters.read_point};
     const AccelTraversal& rays = at_first_hit_ ? *frame_.geometry.first_rays : *frame_.geometry.accel_info;
     return rays.occluded(frame_.geometry.accel, ray, &opaque, &tracer_->stats);

@@ -147,7 +147,7 @@ template <EffectMask mask>
 [[gnu::noinline]] Vec3 traced_shadow(Tracer* tracer, const Surface& s, const LightRun& run, std::uint32_t light,
                                      const LightSample* known, bool at_first_hit, bool passes) {
   const FrameData& frame = *tracer->frame;
-  const LightPoint* emitter = emitter_of(frame.lights.points[light]);
+  const LightPoint* emitter = emitter_of(tracer->light_points[light]);
   bool blocked = false;
   if (!passes && emitter && frame.lights.point_groups.groups.count) {
     --tracer->rays[static_cast<int>(RayKind::shadow)];  // is_point_blocked() counts its own rays
@@ -158,7 +158,7 @@ template <EffectMask mask>
   if (blocked) return {0, 0, 0};
   if (passes && !kClear) return {1, 1, 1};
   LightSample sample;
-  if (!known) run.sample(frame.lights.points[light], s.point, &sample), known = &sample;
+  if (!known) run.sample(tracer->light_points[light], s.point, &sample), known = &sample;
   const Ray ray = shadow_ray(frame, s, *known);
   ShadowContext context = {&frame, emitter};
   HitFilter opaque = {frame.filters.accept_opaque, &context, frame.filters.read_point};
@@ -175,7 +175,7 @@ template <EffectMask mask>
   return {1, 1, 1};
 }
 
-// Fraction of the light of frame.lights.points[light] (in the run) that arrives: zero or one, or between if something
+// Fraction of the light of point `light` (in the run) that arrives: zero or one, or between if something
 // transparent is in the way. `sample` is the light's sample at the surface, or null.
 template <EffectMask mask>
 [[gnu::always_inline]] inline Vec3 shadow(Tracer* tracer, const Surface& s, const LightRun& run, std::uint32_t light,

@@ -25,6 +25,7 @@ std::uint32_t strength_of(float most) { return float_bits(most) >> 22; }
 
 SourceSearch::SourceSearch(Tracer* tracer, const Surface& surface, const Material& m, const Vec3& to_viewer)
     : frame_(*tracer->frame),
+      light_points_(tracer->light_points),
       surface_(surface),
       material_(m),
       lobe_(lobe_at(*tracer->frame, surface, m)),
@@ -110,7 +111,7 @@ void SourceSearch::sum_up() {
 
 void SourceSearch::add_light(std::uint32_t light, std::uint16_t run) {
   LightEntry entry;
-  if (!radiance(frame_.lights.points[light], run, &entry.radiance)) return;
+  if (!radiance(light_points_[light], run, &entry.radiance)) return;
   entry.most = max_component(entry.radiance);
   if (!(entry.most > 0)) return;
   entry.light = light, entry.node = kNone, entry.run = run;

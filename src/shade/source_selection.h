@@ -52,6 +52,7 @@ class SourceSearch {
   bool radiance(const LightPoint& light, std::uint32_t run, Vec3* radiance) const;
 
   const FrameData& frame_;
+  const LightPoint* light_points_;
   const Surface& surface_;
   const Material& material_;
   const BrdfInfo& lobe_;

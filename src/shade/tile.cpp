@@ -5,6 +5,7 @@
 #include "shade/even_points.h"
 #include "shade/filters.h"
 #include "shade/pixel.h"
+#include "shade/sample_points.h"
 #include "shade/strip.h"
 #include "shade/tile_shadows.h"
 
@@ -61,6 +62,7 @@ Vec3 pixel_radiance(Tracer* tracer, std::uint32_t column, std::uint32_t row, Sur
   Vec3 sum = {0, 0, 0};
   observe_pixel(tracer, column, row);
   for (std::uint32_t sample = 0; sample < sample_count; ++sample) {
+    use_points_of(tracer, sample);
     Ray ray = pixel_ray(frame, column, row, rook_point(sample, sample_count));
     Hit hit;
     frame.geometry.first_rays->closest(frame.geometry.accel, ray, visible_filter(frame), &hit, &tracer->stats);
@@ -113,6 +115,7 @@ void trace_tile(Tracer* tracer, const Tile& tile, const PixelRows& image) {
   RayPacket packet;
   packet.origin = frame.view.camera.eye, packet.t_max = __builtin_inff(), packet.count = tile.count;
   for (std::uint32_t sample = 0; sample < sample_count; ++sample) {
+    use_points_of(tracer, sample);
     set_directions(frame.view.camera, tile, rook_point(sample, sample_count), &packet);
     Hit hits[kPacketMax];
     frame.geometry.first_rays->closest_packet(frame.geometry.accel, packet, visible_filter(frame), hits,

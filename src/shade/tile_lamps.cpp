@@ -19,7 +19,8 @@ struct TileLamp {
 };
 
 // Computes the pixels' views of the lamp's polygon, if it has one.
-void find_views(const FrameData& frame, const TileReceivers& receivers, TileLamp* lamp, TileShadows* shadows) {
+void find_views(const Tracer& tracer, const TileReceivers& receivers, TileLamp* lamp, TileShadows* shadows) {
+  const FrameData& frame = *tracer.frame;
   const std::uint32_t number = lamp->number(frame);
   if (!lamp->run.polygons || number >= kTilePolygonMax) return;
   const LightPolygon& polygon = lamp->run.polygons[number];
@@ -28,7 +29,7 @@ void find_views(const FrameData& frame, const TileReceivers& receivers, TileLamp
   for (std::uint32_t k = 0; k < receivers.count; ++k) {
     const std::uint32_t pixel = receivers.pixel[k];
     const Surface& s = shadows->surface[pixel];
-    const LightPoint& point = frame.lights.points[lamp->first];
+    const LightPoint& point = tracer.light_points[lamp->first];
     if (is_own(frame, s, point) && is_unlit_by_own(frame, s, point)) continue;
     const PolygonView view = tile.view[pixel] = view_polygon(polygon, s);
     tile.viewed.set(pixel);
@@ -110,7 +111,7 @@ class TilePoints {
       if (lamp_.views.lit[place] || lamp_.views.unlit[place]) continue;
       const Surface& s = shadows_->surface[place];
       LightSample sample;
-      if (!lights_up(frame_, s, lamp_.run, frame_.lights.points[light], &sample)) continue;
+      if (!lights_up(frame_, s, lamp_.run, tracer_->light_points[light], &sample)) continue;
       lit.set(place);
       if (light < kTileSampleMax) shadows_->sample[light][place] = {sample.direction, sample.irradiance};
       if (!(dot(s.geometric, sample.direction) > 0)) continue;
@@ -125,8 +126,8 @@ class TilePoints {
   // Adds the rays to a point to the packet, for pixels that probe it and do not know the result.
   void add_rays(std::uint32_t point, std::uint64_t pixels) {
     const std::uint64_t fresh = pixels & probes_[point] & ~known_[point];
-    const Vec3& position = frame_.lights.points[first_ + point].position;
-    begin_point(frame_.lights.points[first_ + point]);
+    const Vec3& position = tracer_->light_points[first_ + point].position;
+    begin_point(tracer_->light_points[first_ + point]);
     known_[point] |= fresh;
     for (std::uint64_t rest = fresh; rest; rest &= rest - 1) {
       const std::uint32_t place = static_cast<std::uint32_t>(__builtin_ctzll(rest));
@@ -208,7 +209,7 @@ void find_lamp_tile_shadows(Tracer* tracer, const RayPacket& rays, const Hit* hi
     const std::uint32_t step = has_lamps ? frame.settings.points_per_area_light : 1;
     for (std::uint32_t i = run.begin; i < run.end && i < kTileLightMax; i += step) {
       TileLamp lamp = {run, i, {}};
-      if (has_lamps) find_views(frame, receivers, &lamp, shadows);
+      if (has_lamps) find_views(*tracer, receivers, &lamp, shadows);
       if (has_groups)
         TilePoints(tracer, lamp, receivers, shadows).find();
       else if (has_lamps)

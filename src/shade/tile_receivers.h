@@ -44,12 +44,12 @@ struct KnownViews {
   TileMask lit, unlit, matter;
 };
 
-// Traces the shadow rays to frame.lights.points[i], in the run. Inline, because most lights have no known views.
+// Traces the shadow rays to light point i, in the run. Inline, because most lights have no known views.
 [[gnu::always_inline]] inline void trace_light(Tracer* tracer, const LightRun& run, std::uint32_t i,
                                                const TileReceivers& receivers, const KnownViews* views,
                                                TileShadows* shadows) {
   const FrameData& frame = *tracer->frame;
-  const LightPoint& light = frame.lights.points[i];
+  const LightPoint& light = tracer->light_points[i];
   const bool keeps_sample = i < kTileSampleMax;
   TileMask lit = {}, traced = {}, hidden = {};
   std::uint8_t pixel[kPacketMax];

@@ -100,6 +100,7 @@ Tracer make_tracer(const FrameData& frame) {
   CHECK(frame.kernels.surface != nullptr && frame.kernels.radiance != nullptr && frame.geometry.first_rays != nullptr);
   Tracer tracer;
   tracer.frame = &frame;
+  tracer.light_points = frame.lights.points.data;
   return tracer;
 }
 

@@ -8,6 +8,7 @@ namespace pocketray {
 struct CellCorner;
 struct FrameData;
 struct InterleavedPixel;
+struct LightPoint;
 struct Surface;
 struct TileShadows;
 
@@ -67,6 +68,7 @@ struct alignas(64) Tracer {
   std::uint64_t rays[kRayKindCount] = {};
   std::uint64_t rays_left_out = 0, rays_ended = 0;
   TraceStats stats;
+  const LightPoint* light_points = nullptr;   // of the sample being traced, see sample_points.h
   const Surface* first_surface = nullptr;     // of the sample being shaded; null: not known
   const TileShadows* tile_shadows = nullptr;  // of the current tile, or null
   std::uint32_t tile_pixel = 0;               // index in the tile of the pixel being shaded

@@ -61,6 +61,7 @@ std::size_t coherence_need(const Scene& scene, EffectMask mask, const CoherenceP
   if (keeps_paths(mask, plan))
     bytes = size_sum(bytes, size_sum(arena_need(pixels * plan.samples * sizeof(KeptPath)), arena_need<Box>(tiles)));
   bytes = size_sum(bytes, arena_need<KnownShadows>(tiles * plan.samples * known_lights(plan)));
+  if (plan.sample_points) bytes = size_sum(bytes, arena_need<LightPoint>(plan.sample_points));
   bytes = size_sum(bytes, arena_need<LightPoint>(plan.light_points) + arena_need<ChangeCounts>(plan.threads));
   bytes = size_sum(bytes, arena_need<LightPolygon>(plan.area_lights));
   bytes = size_sum(bytes, arena_need<Span>(kSpanRows * row_spans_max(plan.width)));
@@ -93,6 +94,7 @@ void make_coherence(const FrameData& frame, const CoherencePlan& plan, Arena* ke
   }
   c->shadows = arena_array_zeroed<KnownShadows>(keep, tiles * plan.samples * known_lights(plan));
   c->lights = arena_array<LightPoint>(keep, plan.light_points);
+  if (plan.sample_points) c->sample_lights = arena_array<LightPoint>(keep, plan.sample_points);
   c->light_polygons = arena_array<LightPolygon>(keep, plan.area_lights);
   c->counts = arena_array_zeroed<ChangeCounts>(keep, plan.threads);
   c->spans = arena_array<Span>(keep, kSpanRows * row_spans_max(plan.width));
@@ -107,8 +109,9 @@ void make_coherence(const FrameData& frame, const CoherencePlan& plan, Arena* ke
 bool fits(const Coherence& c, const FrameData& frame) {
   bool has_tables = c.tables.words.count > 0;
   return kept_sample_count(frame.settings, frame.mask) <= c.plan.samples &&
-         frame.lights.points.count <= c.plan.light_points && frame.lights.polygons.count <= c.plan.area_lights &&
-         (has_tables || !keeps_tables(frame.mask, c.plan)) && (c.given.count > 0 || !reads_others(frame.mask)) &&
+         frame.lights.points.count <= c.plan.light_points && frame.lights.sample_points.count <= c.plan.sample_points &&
+         frame.lights.polygons.count <= c.plan.area_lights && (has_tables || !keeps_tables(frame.mask, c.plan)) &&
+         (c.given.count > 0 || !reads_others(frame.mask)) &&
          (c.virtual_lights.count > 0 || !has(frame.mask, Effect::instant_radiosity)) &&
          (c.paths.count > 0 || !is_compensated(frame.settings, frame.mask));
 }
@@ -123,7 +126,9 @@ bool follow_frame(Coherence* c, const FrameData& frame, const char** why) {
   follow_geometry(frame, &c->moving);
   c->followed = signature_of(frame);
   *why = difference(c->signature, c->followed);
-  if (!*why && frame.lights.points.count != c->light_count) *why = "lights were added or removed";
+  if (!*why &&
+      (frame.lights.points.count != c->light_count || frame.lights.sample_points.count != c->sample_light_count))
+    *why = "lights were added or removed";
   if (!*why && has(frame.mask, Effect::instant_radiosity) &&
       !same_virtual_lights(c->virtual_lights[0], *virtual_lights_of(frame.indirect)))
     *why = "a virtual light changed";
@@ -134,8 +139,9 @@ bool follow_frame(Coherence* c, const FrameData& frame, const char** why) {
   if (!*why && c->recoloring.any) *why = follow_recoloring(frame, c->moving, &c->recoloring);
   for (ChangeCounts& counts : c->counts) counts = ChangeCounts();
   std::fill(c->row_traced.begin(), c->row_traced.end(), std::uint8_t(0));
-  bool lights_changed =
-      !*why && (differ(c->lights.data, frame.lights.points) || differ(c->light_polygons.data, frame.lights.polygons));
+  bool lights_changed = !*why && (differ(c->lights.data, frame.lights.points) ||
+                                  differ(c->sample_lights.data, frame.lights.sample_points) ||
+                                  differ(c->light_polygons.data, frame.lights.polygons));
   if (lights_changed && (frame.mask & kEffectsBuilt & effects_with(&EffectRow::followed, Followed::as_lights_stand))) {
     *why = "a light changed; light selection is recomputed";
     lights_changed = false;
@@ -148,7 +154,7 @@ bool follow_frame(Coherence* c, const FrameData& frame, const char** why) {
   c->search = {&frame,
                &c->moving,
                c->tables.words.count ? &c->tables : nullptr,
-               {c->first_hits.data, c->marked.data, c->lights, c->light_polygons},
+               {c->first_hits.data, c->marked.data, c->lights, c->sample_lights, c->light_polygons},
                c->tiles.data,
                c->tile_columns,
                lights_changed,
@@ -314,6 +320,9 @@ void keep(Coherence* c, const FrameData& frame) {
   CHECK_LE(frame.lights.points.count, c->lights.count);
   c->light_count = frame.lights.points.count;
   std::copy(frame.lights.points.begin(), frame.lights.points.end(), c->lights.begin());
+  CHECK_LE(frame.lights.sample_points.count, c->sample_lights.count);
+  c->sample_light_count = frame.lights.sample_points.count;
+  std::copy(frame.lights.sample_points.begin(), frame.lights.sample_points.end(), c->sample_lights.begin());
   CHECK_LE(frame.lights.polygons.count, c->light_polygons.count);
   std::copy(frame.lights.polygons.begin(), frame.lights.polygons.end(), c->light_polygons.begin());
   if (has(frame.mask, Effect::instant_radiosity)) c->virtual_lights[0] = *virtual_lights_of(frame.indirect);

@@ -20,7 +20,8 @@ constexpr bool is_compensated(const Quality& quality, EffectMask mask) {
 
 // Capacities and modes.
 struct CoherencePlan {
-  std::uint32_t width, height, samples, threads, light_points, area_lights;  // at most
+  std::uint32_t width, height, samples, threads;
+  std::uint32_t light_points, sample_points, area_lights;  // at most
   std::uint32_t table_side;
   bool tables_only;           // the paper's method: every ray in tables, whole blocks traced again
   std::uint32_t recolorable;  // number of materials that may change
@@ -38,7 +39,7 @@ struct Coherence {
   Array<KnownShadows> shadows;   // as in ChangeSearch
   Array<std::uint64_t> changed;  // pixels of each tile to trace, bit 8·y + x
   Array<std::uint64_t> given;    // pixels that may pass different light to their neighbours; empty: none ever do
-  Array<LightPoint> lights;      // of the last frame
+  Array<LightPoint> lights, sample_lights;  // of the last frame
   Array<LightPolygon> light_polygons;
   Array<VirtualLights> virtual_lights;  // one, if there are any
   Array<KeptPath> paths;                // like first_hits, for rays of compensation; empty: there are none
@@ -54,7 +55,7 @@ struct Coherence {
   Array<std::uint8_t> row_traced;  // 1: this frame has traced all of the row that it must; for keep_rows()
   std::uint64_t kept_count = 0;    // frames kept
   bool following = false;          // a frame has been followed and is not kept yet
-  std::uint32_t light_count = 0;
+  std::uint32_t light_count = 0, sample_light_count = 0;
   ChangeSearch search = {};
 };
 

@@ -6,6 +6,7 @@
 #include "base/check.h"
 #include "shade/edges.h"
 #include "shade/interleaved.h"
+#include "shade/sample_points.h"
 #include "temporal/beam_search.h"
 #include "temporal/tile_search.h"
 
@@ -166,12 +167,12 @@ void find_shaded(TileOfPixels* tile, const TileHits& hits) {
   for (int i = 0; i < frame.lights.run_count; ++i) {
     const LightRun& run = frame.lights.runs[i];
     for (std::uint32_t k = run.begin; k < run.end; ++k) {
-      const LightPoint& light = frame.lights.points[k];
-      if (!is_stopped_otherwise(tile->r, frame, shadow_beam(run, light, hits.points, hits.room))) continue;
+      if (!is_stopped_otherwise(tile->r, frame, shadow_beam(frame, run, k, hits.points, hits.room))) continue;
       for_each_hit(*tile,
                    [&](std::uint32_t x, std::uint32_t y, std::uint32_t sample, const Hit& hit, std::uint64_t bit) {
                      if (hit.triangle == kNoTriangle) return;
                      const Vec3 point = point_of(frame, hit);
+                     const LightPoint& light = points_of_sample(frame, sample)[k];
                      if (!is_stopped_otherwise(tile->r, frame, shadow_beam(run, light, {point, point}, hits.room)))
                        return;
                      LightSample light_sample;

@@ -20,6 +20,16 @@ Beam shadow_beam(const LightRun& run, const LightPoint& light, const Box& points
   return {from.low, from.high, light.position - points.low, light.position - points.high, 1};
 }
 
+Beam shadow_beam(const FrameData& frame, const LightRun& run, std::uint32_t light, const Box& points, float room) {
+  const Lights& lights = frame.lights;
+  Beam beam = shadow_beam(run, lights.points[light], points, room);
+  for (std::uint32_t k = light; k < lights.sample_points.count; k += lights.points.count) {
+    const Beam other = shadow_beam(run, lights.sample_points[k], points, room);
+    beam.low_slope = min(beam.low_slope, other.low_slope), beam.high_slope = max(beam.high_slope, other.high_slope);
+  }
+  return beam;
+}
+
 namespace {
 
 // Finds in groups the receivers whose shadow ray to the light may meet a change, except those that need no test.
@@ -63,12 +73,12 @@ void list_shadow_rays(TileSearch* t, const LightRun& run, const LightPoint& ligh
 
 }  // namespace
 
-bool may_shade(const ChangeSearch& search, const TileHits& hits, const LightRun& run, const LightPoint& light) {
-  return meets_change(*search.moving, shadow_beam(run, light, hits.points, hits.room));
+bool may_shade(const ChangeSearch& search, const TileHits& hits, const LightRun& run, std::uint32_t light) {
+  return meets_change(*search.moving, shadow_beam(*search.frame, run, light, hits.points, hits.room));
 }
 
 void find_lit_by(TileSearch* t, const LightRun& run, std::uint32_t light) {
-  const LightPoint &is = t->frame.lights.points[light], &was = t->search.last.lights[light];
+  const LightPoint &is = t->lights[light], &was = t->last_lights[light];
   for (std::uint32_t k = 0; k < t->receiver_count; ++k) {
     if (t->changed & bit_of(t->pixels, t->receiver[k])) continue;
     const Surface& s = surface_of(t, k);
@@ -83,9 +93,9 @@ void find_changed_shadows(TileSearch* t, const LightRun& run, std::uint32_t ligh
   const FrameData& frame = t->frame;
   const MovingGeometry& m = *t->search.moving;
   ShadowRays s;
-  list_shadow_rays(t, run, frame.lights.points[light], room, known, &s);
+  list_shadow_rays(t, run, t->lights[light], room, known, &s);
   if (s.rays.count == 0) return;
-  ShadowContext shadow = {&frame, emitter_of(frame.lights.points[light])};
+  ShadowContext shadow = {&frame, emitter_of(t->lights[light])};
   bool filtered = frame.filters.every_shadow || shadow.emitter != nullptr;
   bool clear = frame.filters.accept_clear != nullptr;  // a transparent surface tints: anything in the way counts
   const ShadowFilters filters(m, {filtered ? frame.filters.accept_opaque : nullptr, &shadow});

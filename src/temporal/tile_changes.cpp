@@ -7,6 +7,7 @@
 #include "brdf/clear_coat.h"
 #include "brdf/sheen.h"
 #include "shade/edges.h"
+#include "shade/sample_points.h"
 #include "shade/trace_spans.h"
 #include "temporal/tile_search.h"
 
@@ -45,7 +46,10 @@ void find_receivers(TileSearch* t) {
 bool has_light_changed(const ChangeSearch& search, const LightRun& run, std::uint32_t light) {
   const FrameData& frame = *search.frame;
   if (!search.lights_changed) return false;
-  if (std::memcmp(&search.last.lights[light], &frame.lights.points[light], sizeof(LightPoint)) != 0) return true;
+  const Lights& lights = frame.lights;
+  if (std::memcmp(&search.last.lights[light], &lights.points[light], sizeof(LightPoint)) != 0) return true;
+  for (std::uint32_t k = light; k < lights.sample_points.count; k += lights.points.count)
+    if (std::memcmp(&search.last.sample_lights[k], &lights.sample_points[k], sizeof(LightPoint)) != 0) return true;
   if (!run.polygons) return false;
   const std::uint32_t lamp = (light - run.begin) / frame.settings.points_per_area_light;
   return std::memcmp(&search.last.light_polygons[lamp], &run.polygons[lamp], sizeof(LightPolygon)) != 0;
@@ -63,7 +67,7 @@ void for_each_suspect(const ChangeSearch& search, const TileHits& hits, std::uin
     for (std::uint32_t i = run.begin; i < run.end; ++i) {
       if (i < kSuspectLights && !(suspects >> i & 1)) continue;
       const bool has_changed = has_light_changed(search, run, i);
-      if (!has_changed && (!casts || !may_shade(search, hits, run, frame.lights.points[i]))) continue;
+      if (!has_changed && (!casts || !may_shade(search, hits, run, i))) continue;
       if (!visit(run, i, has_changed)) return;
     }
   }
@@ -119,6 +123,8 @@ std::uint64_t find_changes_of(const ChangeSearch& search, std::uint32_t tile, co
     for (std::uint32_t sample = begin; sample < end; ++sample) {
       t->hits = search.last.first_hits + std::size_t(sample) * frame.settings.width * frame.settings.height;
       t->offset = kept_sample_offset(frame.settings, sample);
+      t->lights = points_of_sample(frame, sample);
+      t->last_lights = points_of_sample(frame, sample, search.last.lights, search.last.sample_lights);
       if (seen) find_changed_hits(t, hits.t_max);
       find_receivers(t);
       if (sample < frame.settings.samples_per_pixel) {  // others take the light that these share

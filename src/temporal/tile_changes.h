@@ -23,7 +23,7 @@ struct TileHits {
 struct LastFrame {
   const Hit* first_hits = nullptr;  // width × height per sample
   const std::uint8_t* marked = nullptr;
-  Array<const LightPoint> lights;
+  Array<const LightPoint> lights, sample_lights;  // Lights::points and sample_points
   Array<const LightPolygon> light_polygons;
 };
 

@@ -43,7 +43,9 @@ struct TileSearch {
   std::uint64_t given;  // pixels that may pass different light to their neighbours
   ChangeCounts* counts;
   TraceStats* stats;
-  const Hit* hits;  // of the sample
+  const Hit* hits;                          // of the sample
+  const LightPoint* lights = nullptr;       // the sample's
+  const LightPoint* last_lights = nullptr;  // in the last frame
   Vec2 offset = {0, 0};
   std::uint32_t receiver_count = 0;   // first hits that may receive light
   std::uint8_t receiver[kPacketMax];  // their pixels
@@ -68,6 +70,8 @@ struct TileSearch {
 Beam camera_beam(const CameraRays& camera, const PixelRect& pixels, float t_max);
 // Beams of all shadow rays to a light, and to an interleaved source, from points and at most `room` beside them.
 Beam shadow_beam(const LightRun& run, const LightPoint& light, const Box& points, float room);
+// ... to the points that all samples have of light point `light`.
+Beam shadow_beam(const FrameData& frame, const LightRun& run, std::uint32_t light, const Box& points, float room);
 Beam source_beam(const InterleavedSource& source, const Vec3& place, const Box& points, float room);
 
 // Returns whether a camera ray of these or other pixels may meet a change; `t_max` is the farthest hit's.
@@ -79,7 +83,7 @@ void find_changed_hits(TileSearch* t, float t_max);
 const Surface& surface_of(TileSearch* t, std::uint32_t k);
 
 // Returns whether a shadow ray from the tile to the light may meet a change.
-bool may_shade(const ChangeSearch& search, const TileHits& hits, const LightRun& run, const LightPoint& light);
+bool may_shade(const ChangeSearch& search, const TileHits& hits, const LightRun& run, std::uint32_t light);
 // Finds pixels that the light reached or would reach unblocked, before or after it changed.
 void find_lit_by(TileSearch* t, const LightRun& run, std::uint32_t light);
 // Finds pixels whose shadow ray to the light is blocked where it was not, or no longer. If results are kept, the first

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <utility>
 
 #include "base/check.h"
 #include "base/seal.h"
@@ -127,19 +128,31 @@ Status set_quality(Renderer* renderer, const Quality& quality) {
   return change_settings(renderer, settings);
 }
 
+// Samples of each pixel of a picture that rests.
+constexpr std::uint32_t kRestingSamples = kSampleCountMax;
+
 bool can_refine(const Viewer& viewer, const Renderer& renderer, const ViewerLoop& loop) {
   if (loop.exact || viewer.picture_merged || viewer.options.frame_count > 0) return false;
-  return loop.refines || (renderer.effects.mask & kInterpolatingEffects) != 0;
+  return loop.refines || (renderer.effects.mask & kInterpolatingEffects) != 0 ||
+         renderer.settings.samples_per_pixel < kRestingSamples;
 }
 
-// Traces a slice of the exact picture, over one with interpolated pixels.
+// Sets the accuracy of a picture that rests: all pixels are traced, with as many samples as memory is planned for.
+Status set_resting_quality(Renderer* renderer) {
+  Quality exact = renderer->settings;
+  trace_all_pixels(&exact);
+  const std::uint32_t samples = std::exchange(exact.samples_per_pixel, kRestingSamples);
+  if (set_quality(renderer, exact).ok) return success();
+  exact.samples_per_pixel = samples;
+  return set_quality(renderer, exact);
+}
+
+// Traces a slice of the resting picture, over one with fewer samples or with interpolated pixels.
 Status refine(Viewer* viewer, Renderer* renderer, ViewerLoop* loop) {
   if (!loop->refines) {
     loop->quality = renderer->settings;
     loop->refines = true;
-    Quality exact = renderer->settings;
-    trace_all_pixels(&exact);
-    RETURN_IF_ERROR(set_quality(renderer, exact));
+    RETURN_IF_ERROR(set_resting_quality(renderer));
     RETURN_IF_ERROR(begin_frame(renderer, {loop->seconds}));
     loop->progressive = afresh();
   }

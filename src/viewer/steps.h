@@ -16,14 +16,14 @@ struct ViewerLoop {
   bool camera_moved = false;          // by the user, since the scene's own camera was shown
   bool moved = false, passed = true;  // camera or time has changed: a new picture is due
   bool finished = false;
-  std::uint64_t coarse_ns = 0;   // time until the last picture was visible
-  bool dropped = false;          // the last split picture was dropped for a newer one before it was visible
-  bool coarse_shown = false;     // the screen shows the current split picture, coarse
-  bool moving = false;           // a button moves the camera
+  std::uint64_t coarse_ns = 0;  // time until the last picture was visible
+  bool dropped = false;         // the last split picture was dropped for a newer one before it was visible
+  bool coarse_shown = false;    // the screen shows the current split picture, coarse
+  bool moving = false;          // a button moves the camera
   // With a budget: frames since camera or time moved, and how many of the latest had equal settings.
   std::uint32_t still_frames = 0, steady_frames = 0;
   bool settled = true;
-  // A picture with interpolated pixels is traced exactly once it rests.
+  // A picture with few samples or interpolated pixels is traced exactly once it rests.
   bool refines = false;  // in progress; the next picture uses `quality`
   Quality quality;
   bool exact = false;         // the resting picture has been refined

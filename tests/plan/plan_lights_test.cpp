@@ -3,7 +3,9 @@
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
+#include <set>
 #include <string>
+#include <utility>
 
 #include "accel/accel_list.h"
 #include "base/limits.h"
@@ -185,6 +187,51 @@ TEST_CASE("plan_lights_points_keep_the_centre_of_a_mesh") {
           CAPTURE(n);
           CHECK(length(sum / static_cast<float>(n)) < 0.001f);
         }
+      }
+}
+
+// Goal: the points of a pixel's samples divide a lamp like as many points of one sample. Method: closed form. Of a
+// square, every point lies in a part of its own, all in their lamp's cell; of a sphere, whose shares span many
+// triangles, on the surface. Their mean is the lamp's centre.
+TEST_CASE("plan_lights_samples_have_points_of_their_own") {
+  for (const std::uint32_t samples : {2u, 4u, 9u, 16u})
+    for (const std::uint32_t n : {1u, 4u, 16u})
+      for (const bool sphere : {false, true}) {
+        auto s = lamp_scene();
+        const std::uint32_t m = add_material(s.get(), lamp(1));
+        if (sphere)
+          add_sphere(s.get(), {0, 0, 0}, 1, 24, 16, m);
+        else
+          add_quad(s.get(), {-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}, m);
+        s->bind();
+        Settings settings = settings_for(0, 4, 3);
+        settings.points_per_area_light = n, settings.samples_per_pixel = samples;
+        auto test = make_renderer(s->scene, settings);
+        const Lights& lights = test->renderer.frame.lights;
+        REQUIRE(lights.points.count == n);
+        REQUIRE(lights.sample_points.count == samples * n);
+        CAPTURE(samples);
+        CAPTURE(n);
+        CAPTURE(sphere);
+        const float cells = std::sqrt(static_cast<float>(n)), count = static_cast<float>(samples * n);
+        std::set<std::pair<int, int>> parts;
+        Vec3 sum = {0, 0, 0};
+        for (std::uint32_t k = 0; k < lights.sample_points.count; ++k) {
+          const LightPoint &p = lights.sample_points[k], &whole = lights.points[k % n];
+          CHECK(p.intensity == whole.intensity);
+          sum += p.position;
+          if (sphere) {
+            CHECK(length(p.position) == doctest::Approx(1).epsilon(0.03));
+            continue;
+          }
+          const Vec3 offset = abs(p.position - whole.position) * cells;
+          CHECK(std::max(offset.x, offset.y) < 1);
+          const float parts_of_side = cells * static_cast<float>(samples) / 2;
+          parts.insert({static_cast<int>((p.position.x + 1) * parts_of_side),
+                        static_cast<int>((p.position.y + 1) * parts_of_side)});
+        }
+        if (!sphere) CHECK(parts.size() == lights.sample_points.count);
+        CHECK(length(sum / count) < (sphere ? 0.8f / std::sqrt(count) : 1e-6f));
       }
 }
 

@@ -6,6 +6,7 @@
 #include "scene/builtin_helpers.h"
 #include "shade/edges.h"
 #include "shade/pixel.h"
+#include "shade/sample_points.h"
 #include "shade_helpers.h"
 #include "support/effort.h"
 #include "support/test_environment.h"
@@ -55,9 +56,11 @@ struct EdgeOracle {
   }
 };
 
-// Radiance of one sample of a pixel.
-Vec3 sample_at(const Renderer& renderer, std::uint32_t column, std::uint32_t row, const Vec2& offset) {
+// Radiance of a sample of a pixel: 0 is the centre.
+Vec3 sample_at(const Renderer& renderer, std::uint32_t column, std::uint32_t row, std::uint32_t sample) {
   Tracer tracer = make_tracer(renderer.frame);
+  use_points_of(&tracer, sample);
+  const Vec2 offset = kept_sample_offset(renderer.settings, sample);
   const Ray ray = pixel_ray(renderer.frame, column, row, offset);
   Hit hit;
   renderer.frame.geometry.accel_info->closest(renderer.frame.geometry.accel, ray, visible_filter(renderer.frame), &hit,
@@ -110,7 +113,11 @@ TEST_CASE("edges_are_as_defined") {
       auto plain = make_renderer(generated->scene, settings);
       REQUIRE(render_frame(&plain->renderer, 0.5).ok);
       const Picture centres(plain->renderer.image.begin(), plain->renderer.image.end());
-      const Picture picture = with_edges(generated->scene, settings, 0.5);
+      Settings with_samples = settings;
+      with_samples.edge_samples = kSamples;
+      auto edged = make_renderer(generated->scene, with_samples);
+      REQUIRE(render_frame(&edged->renderer, 0.5).ok);
+      const Array<Vec3>& picture = edged->renderer.image;
       const EdgeOracle oracle = {centres, int(size[0]), int(size[1]), double(plain->renderer.view.exposure)};
       CAPTURE(size[0]);
       CAPTURE(size[1]);
@@ -122,8 +129,7 @@ TEST_CASE("edges_are_as_defined") {
           if (is_edge == 0) CHECK(picture[i] == centres[i]);
           if (is_edge != 1) continue;
           Vec3 sum = centres[i];
-          for (std::uint32_t k = 0; k < kSamples; ++k)
-            sum += sample_at(plain->renderer, column, row, sample_offset(k, kSamples));
+          for (std::uint32_t k = 0; k < kSamples; ++k) sum += sample_at(edged->renderer, column, row, 1 + k);
           exact += difference(picture[i], sum * (1 / float(kSamples + 1))) < 1e-4;
           ++edges;
         }
@@ -156,15 +162,15 @@ TEST_CASE("edges_of_even_light_are_means") {
     add_half_plane(&s, slope, 0.07f);
     Settings settings;
     settings.width = 44, settings.height = 34;
+    settings.edge_samples = kSamples;
     auto test = make_renderer(s.scene, settings);
     const Picture picture = with_edges(s.scene, settings);
     int edges = 0;
     for (std::uint32_t row = 0; row < settings.height; ++row)
       for (std::uint32_t column = 0; column < settings.width; ++column) {
-        Vec3 sum = sample_at(test->renderer, column, row, {0.5f, 0.5f});
+        Vec3 sum = sample_at(test->renderer, column, row, 0);
         const Vec3 centre = sum;
-        for (std::uint32_t k = 0; k < kSamples; ++k)
-          sum += sample_at(test->renderer, column, row, sample_offset(k, kSamples));
+        for (std::uint32_t k = 0; k < kSamples; ++k) sum += sample_at(test->renderer, column, row, 1 + k);
         const Vec3 mean = sum * (1 / float(kSamples + 1));
         const Vec3& pixel = picture[std::size_t(row) * settings.width + column];
         edges += !(pixel == centre);

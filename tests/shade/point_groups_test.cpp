@@ -191,3 +191,27 @@ TEST_CASE("point_groups_are_left_out_where_they_save_nothing") {
   s->bind();
   CHECK(group_count(settings_of(9)) == 0);
 }
+
+// Goal: 4 samples of 4 points see a penumbra nearly as 16 points of one sample do, and much better than 4. Method:
+// behind the straight edge of half a plane, each against as many samples of 256 points.
+TEST_CASE("point_groups_of_samples_add_up") {
+  constexpr std::uint32_t kCounts[3][2] = {{4, 4}, {1, 16}, {1, 4}};  // samples, points
+  Rng rng = make_rng(7);
+  double square[3] = {0, 0, 0};
+  for (int i = 0; i < effort(12); ++i) {
+    const auto s = half_plane_scene(&rng);
+    for (int way = 0; way < 3; ++way) {
+      Settings settings = settings_of(256);
+      settings.samples_per_pixel = kCounts[way][0];
+      const Picture truth = trace(s->scene, settings, AreaShadows::every).picture;
+      settings.points_per_area_light = kCounts[way][1];
+      const Picture picture = trace(s->scene, settings, AreaShadows::every).picture;
+      for (std::size_t k = 0; k < truth.size(); ++k) square[way] += std::pow(double(picture[k].x - truth[k].x), 2);
+    }
+  }
+  const double to_16 = std::sqrt(square[0] / square[1]), to_4 = std::sqrt(square[0] / square[2]);
+  MESSAGE("RMSE of 4 × 4 points: ", to_16, " of that of 16, ", to_4, " of that of 4");
+  CHECK(square[1] > 0);
+  CHECK(to_16 < 1.5);
+  CHECK(to_4 < 0.5);
+}

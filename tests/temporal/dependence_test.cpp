@@ -5,6 +5,7 @@
 #include <string>
 
 #include "engine/frame.h"
+#include "support/effort.h"
 #include "temporal/moving_scene.h"
 
 using namespace pocketray;
@@ -180,6 +181,40 @@ TEST_CASE("dependence_on_the_shape_of_a_lamp") {
   CHECK(whole_because(pair) == "");
   CHECK(std::memcmp(&point, &pair.whole->renderer.frame.lights.points[0], sizeof point) == 0);
   CHECK(std::memcmp(before.data(), image.data, image.bytes()) != 0);
+}
+
+// Goal: shadows of a lamp are followed where each sample has points of its own. Method: a box passes through the light
+// of a lamp that rests, and of one that moves along; with samples everywhere, and at edges.
+TEST_CASE("dependence_on_the_points_of_samples") {
+  for (const bool at_edges : {false, true})
+    for (const bool lamp_moves : {false, true}) {
+      auto s = std::make_unique<GeneratedScene>();
+      add_quad(s.get(), {-4, 0, 4}, {4, 0, 4}, {4, 0, -4}, {-4, 0, -4}, add_material(s.get(), matte(0.5f)));
+      Material lamp = matte(0);
+      lamp.emission = {4, 4, 4};
+      const std::uint32_t shine = add_material(s.get(), lamp), first = vertex_count(*s);
+      if (lamp_moves) add_quad(s.get(), {-1, 3, -1}, {1, 3, -1}, {1, 3, 1}, {-1, 3, 1}, shine);
+      add_box(s.get(), {-0.8f, 0.6f, -0.5f}, {0.2f, 0.9f, 0.5f}, 0);
+      let_move(s.get(), first);
+      if (!lamp_moves) add_quad(s.get(), {-1, 3, -1}, {1, 3, -1}, {1, 3, 1}, {-1, 3, 1}, shine);
+      aim(s.get(), {0, 2, 6}, {0, 0, 0}, 50);
+      s->bind();
+      Settings settings = settings_for(0, 48, 36);
+      settings.points_per_area_light = 4;
+      (at_edges ? settings.edge_samples : settings.samples_per_pixel) = 4;
+      Pair pair = make_pair(std::move(s), settings);
+      CAPTURE(at_edges);
+      CAPTURE(lamp_moves);
+      CHECK(same_frames(pair));
+      const Lights& lights = pair.whole->renderer.frame.lights;
+      CHECK(lights.sample_points.count == 4 * lights.points.count);
+      for (int frame = 0; frame < effort(6); ++frame) {
+        for (Vec3& p : pair.scene->rest_positions) p.x += 0.07f, p.z -= 0.03f;
+        CAPTURE(frame);
+        CHECK(same_frames(pair));
+        CHECK(whole_because(pair) == "");
+      }
+    }
 }
 
 // Goal: a mirror shows shadows that move. Method: it shows a wall; what casts the shadow is seen neither directly nor

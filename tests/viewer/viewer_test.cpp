@@ -304,8 +304,24 @@ Picture picture_at(double seconds, const Quality& quality, bool budgeted, double
 
 }  // namespace
 
-// Goal: what rests is refined to the exact picture, and after a move interpolated again. Method: pictures long after
-// the first and soon after a move, with every pixel traced and without; a frame takes 1/60 s of the screen's clock.
+namespace {
+
+Picture statue_of_16_samples() {
+  CommonOptions common;
+  common.scene = "statue", common.size = "320x60", common.threads = 1;
+  common.settings["samples"].count = 16;
+  OpenScene opened;
+  REQUIRE(open_scene(common, OpenHooks(), &opened).ok);
+  REQUIRE(start_scene(&opened, common).ok);
+  REQUIRE(render_frame(&opened.renderer, 0).ok);
+  return Picture(opened.renderer.image.begin(), opened.renderer.image.end());
+}
+
+}  // namespace
+
+// Goal: what rests is refined to 16 samples of each pixel, and after a move it has few or is interpolated again.
+// Method: pictures long after the first and soon after a move, with every pixel traced and without; a frame takes 1/60
+// s of the screen's clock.
 TEST_CASE("viewer_refines_what_rests") {
   for (bool budgeted : {false, true}) {
     CAPTURE(budgeted);
@@ -313,6 +329,7 @@ TEST_CASE("viewer_refines_what_rests") {
     Quality some;
     const Picture exact = picture_at(20, all, budgeted, 0), moved = picture_at(40, all, budgeted, 19);
     CHECK(!same_picture(moved, exact));
+    CHECK(same_picture(exact, statue_of_16_samples()));
     for (int i = 0; i < 4; ++i) {
       some.selective_contrast = i % 3 == 0 ? 0.25f : 0;
       some.resolution = i == 0 ? Resolution::full : i == 1 ? Resolution::half : Resolution::checkerboard;

@@ -46,8 +46,7 @@ Status plan_way(Way way, const ReportOptions& o, std::uint32_t table, Renderer* 
   if (way == Way::frame_by_frame || renderer->history.state.planned) return success();
   if (const char* because = unfollowed_because(renderer->effects.mask, way == Way::by_tables))
     return failure("coherence does not follow these frames: %s", because);
-  const CoherencePlan plan =
-      coherence_plan(*settings, renderer->lights.point_count_max, renderer->lights.polygons.count);
+  const CoherencePlan plan = coherence_plan(renderer->memory.plan.planned_for, renderer->lights.polygons.count);
   std::size_t bytes = renderer->memory.plan.total_bytes +
                       coherence_need(renderer->scene, renderer->effects.mask, plan) +
                       coherence_scratch_need(renderer->scene, renderer->effects.mask);

@@ -5,6 +5,7 @@
 #include "base/check.h"
 #include "desktop/reference/environment.h"
 #include "desktop/reference/light.h"
+#include "shade/sample_points.h"
 #include "shade/trace_spans.h"
 
 namespace pocketray {
@@ -89,6 +90,9 @@ void trace_as_rendered(const Reference& reference, std::uint32_t row_begin, std:
   CHECK(n >= 1 && n <= kSampleCountMax);
   CHECK(row_begin <= row_end && row_end <= static_cast<std::uint32_t>(frame.view.camera.height));
   CHECK(picture != nullptr);
+  FrameData of_sample = frame;
+  Reference sampled = reference;
+  sampled.world.frame = &of_sample;
   for (std::uint32_t y = row_begin; y < row_end; ++y)
     for (std::uint32_t x = 0; x < width; ++x) {
       Vec3d sum = {0, 0, 0};
@@ -96,7 +100,8 @@ void trace_as_rendered(const Reference& reference, std::uint32_t row_begin, std:
         Vec2 at = sample_offset(i, n);
         ReferenceRay ray =
             reference_camera_ray(frame.view.camera, x + static_cast<double>(at.x), y + static_cast<double>(at.y));
-        sum += follow(reference, ray, {0, frame.view.eye_media});
+        of_sample.lights.points.data = points_of_sample(frame, i);
+        sum += follow(sampled, ray, {0, frame.view.eye_media});
       }
       picture[std::size_t(y - row_begin) * width + x] = sum / static_cast<double>(n);
     }
