@@ -313,6 +313,7 @@ bool probe_exposure(Renderer* renderer, ExposureProbe* p, std::uint32_t pixel_co
                 begin = p->next;
   FrameData frame = renderer->frame;
   frame.kept.first_hits = nullptr;
+  frame.settings.samples_per_pixel = 1;  // pictures of more samples are as bright
   if (frame.mask & kInterpolatingEffects) frame.kernels.trace_strip = nullptr;
   if (has(frame.mask, Effect::edge_sampling)) frame.kernels.trace_strip = frame.kernels.trace_window_strip;
   Tracer tracer = make_tracer(frame);

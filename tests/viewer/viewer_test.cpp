@@ -310,8 +310,10 @@ Picture statue_of_16_samples() {
   CommonOptions common;
   common.scene = "statue", common.size = "320x60", common.threads = 1;
   common.settings["samples"].count = 16;
+  OpenHooks hooks;
+  hooks.output_bytes = viewer_bytes;
   OpenScene opened;
-  REQUIRE(open_scene(common, OpenHooks(), &opened).ok);
+  REQUIRE(open_scene(common, hooks, &opened).ok);
   REQUIRE(start_scene(&opened, common).ok);
   REQUIRE(render_frame(&opened.renderer, 0).ok);
   return Picture(opened.renderer.image.begin(), opened.renderer.image.end());
