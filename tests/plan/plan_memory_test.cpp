@@ -248,7 +248,7 @@ TEST_CASE("planned_memory_holds_the_widest_settings") {
   auto plan_for = [&](const Settings& settings) {
     PlannedFor planned;
     const EffectMask mask = plan_effects(scene, settings).mask;
-    REQUIRE(check_planned(scene, {settings, mask, 1u << 20, 1u << 20}, settings, mask, &planned).ok);
+    REQUIRE(check_planned(scene, {settings, mask, 1u << 20, 1u << 20, 1u << 20}, settings, mask, &planned).ok);
     return planned;
   };
   auto refusal = [&](const PlannedFor& planned, const Settings& settings) {
