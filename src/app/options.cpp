@@ -106,6 +106,13 @@ void add_exposure(Command command, CommonOptions* o) {
       .details(
           "-60 … 60 stops, added to the scene's exposure, which is measured for imported models with lights. auto "
           "measures it always; fixed or fixed,STOPS never: radiance 1 is white.");
+  command.add_option("--tone NAME", o->tone, "how light too bright for the display is shown")
+      .one_of({kToneNames[0], kToneNames[1]})
+      .capture_default_str()
+      .details(
+          "clip: each of red, green and blue ends at white. film: what is brighter than half of white fades to white, "
+          "with "
+          "its hue.");
 }
 
 void add_memory_and_devices(Command command, CommonOptions* o) {

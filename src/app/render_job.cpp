@@ -66,7 +66,7 @@ void pack_page(Renderer* renderer, const RenderJob& job) {
   std::uint64_t start = clock_ns();
   pack_rows(renderer->image.data, static_cast<int>(renderer->settings.width),
             static_cast<int>(renderer->settings.height), 0, static_cast<int>(renderer->settings.height),
-            renderer->view.exposure, p.packed_format, Rotation::none, p.dither, job.page, p.packed_line_bytes);
+            display_of(*renderer), p.packed_format, Rotation::none, p.dither, job.page, p.packed_line_bytes);
   wait_for_pace(&renderer->pace, 0, start);
 }
 
@@ -109,7 +109,7 @@ Status render_file(Renderer* renderer, const RenderJob& job, std::uint32_t frame
                    bool* complete) {
   CHECK(frame >= job.asked.sequence.first && frame <= job.asked.sequence.last);
   const std::string& path = job.asked.paths[job.animation ? 0 : frame - job.asked.sequence.first];
-  const float exposure = renderer->view.exposure;
+  const Display display = display_of(*renderer);
   RETURN_IF_ERROR(render_one(renderer, job, frame, files, complete));
   if (!*complete) return success();
   files->trace_ms += renderer->timings.trace_ms;
@@ -120,7 +120,7 @@ Status render_file(Renderer* renderer, const RenderJob& job, std::uint32_t frame
   }
   Status status = job.animation ? add_frame(files->picture, renderer, job.animation)
                                 : write_picture(path.c_str(), files->picture, renderer);
-  renderer->view.exposure = exposure;
+  renderer->view.exposure = display.exposure, renderer->settings.tone = display.tone;
   if (status.ok) ++files->written;
   return status;
 }

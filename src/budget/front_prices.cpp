@@ -22,8 +22,8 @@ Status time_frame(Renderer* renderer, double seconds, void* page, double* ns) {
   std::uint64_t start = clock_ns();
   RETURN_IF_ERROR(render_frame(renderer, seconds, Aov::none, &interrupted));
   int width = static_cast<int>(renderer->settings.width), height = static_cast<int>(renderer->settings.height);
-  pack_rows(renderer->image.data, width, height, 0, height, renderer->view.exposure, kRgb565, Rotation::none, false,
-            page, 2 * width);
+  pack_rows(renderer->image.data, width, height, 0, height, display_of(*renderer), kRgb565, Rotation::none, false, page,
+            2 * width);
   *ns = static_cast<double>(clock_ns() - start);
   return success();
 }

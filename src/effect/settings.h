@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "base/vec3.h"
+#include "base/tone.h"
 #include "effect/effect.h"
 
 namespace pocketray {
@@ -58,7 +58,8 @@ struct Settings : Quality {
   std::uint32_t width = 320, height = 240;  // pixels
   std::uint32_t threads = 1;
   EffectMask forced_on = 0, forced_off = 0;  // --effects
-  std::size_t memory_bytes = 64u << 20;      // the fixed block
+  Tone tone = Tone::clip;
+  std::size_t memory_bytes = 64u << 20;  // the fixed block
   CoherenceMode coherence = CoherenceMode::off;
   std::uint32_t coherence_table = 16;  // blocks of pixels along each side, one bit of each voxel's table [Jevans92]
   bool coherence_by_tables = false;    // as in the paper, for comparison: all rays in tables

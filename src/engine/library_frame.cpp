@@ -61,7 +61,7 @@ void write_pixels(const Renderer& renderer, std::uint32_t row_begin, std::uint32
   int width = static_cast<int>(renderer.settings.width), height = static_cast<int>(renderer.settings.height);
   if (target.format != POCKETRAY_RGB_FLOAT) {
     pack_rows(renderer.image.data, width, height, static_cast<int>(row_begin), static_cast<int>(row_end),
-              renderer.view.exposure, kFormats[target.format], target.rotation, target.dither, target.data,
+              display_of(renderer), kFormats[target.format], target.rotation, target.dither, target.data,
               target.line_bytes);
     return;
   }

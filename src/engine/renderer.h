@@ -139,4 +139,7 @@ Tracer total_counts(const Renderer& renderer);
 // sec. 3.1].
 float measure_exposure(Renderer* renderer);
 
+// How the renderer's pictures are displayed.
+inline Display display_of(const Renderer& renderer) { return {renderer.view.exposure, renderer.settings.tone}; }
+
 }  // namespace pocketray

@@ -120,7 +120,7 @@ inline std::uint32_t packed(const Packer& packer, Vec3 c, const std::uint16_t* t
 }
 
 template <int kBytes, bool kDither>
-ToneCounts pack_rows_of(const Vec3* radiance, int width, int height, int row_begin, int row_end, float exposure,
+ToneCounts pack_rows_of(const Vec3* radiance, int width, int height, int row_begin, int row_end, const Display& display,
                         const Packer& packer, Rotation rotation, unsigned char* pixels, int line_bytes) {
   ToneCounts counts;
   ScreenPosition right = screen_position(1, 0, width, height, rotation);
@@ -136,7 +136,8 @@ ToneCounts pack_rows_of(const Vec3* radiance, int width, int height, int row_beg
     std::uint32_t pixel = 0;
     for (int column = 0; column < width; ++column, out += step) {
       if (kDither || column == 0 || !looks_alike(in[column - 1], in[column]))
-        pixel = packed<kDither>(packer, in[column] * exposure, thresholds, column, &counts);
+        pixel =
+            packed<kDither>(packer, toned(in[column] * display.exposure, display.tone), thresholds, column, &counts);
       store<kBytes>(out, pixel);
     }
   }
@@ -194,7 +195,7 @@ void write_pixel(const PixelFormat& format, void* pixel, std::uint32_t value) {
   store<3>(bytes, value);
 }
 
-ToneCounts pack_rows(const Vec3* radiance, int width, int height, int row_begin, int row_end, float exposure,
+ToneCounts pack_rows(const Vec3* radiance, int width, int height, int row_begin, int row_end, const Display& display,
                      const PixelFormat& format, Rotation rotation, bool dither, void* pixels, int line_bytes) {
   CHECK(pixel_format_valid(format));
   CHECK_LE(0, row_begin);
@@ -202,7 +203,7 @@ ToneCounts pack_rows(const Vec3* radiance, int width, int height, int row_begin,
   CHECK_LE(row_begin, row_end);
   CHECK(radiance != nullptr && pixels != nullptr);
   CHECK(rotation <= Rotation::three_quarters);
-  CHECK_GE(exposure, 0);
+  CHECK_GE(display.exposure, 0);
   int bytes = format.bits_per_pixel / 8;
   if (bytes != 3) CHECK_EQ((reinterpret_cast<std::uintptr_t>(pixels) | static_cast<unsigned>(line_bytes)) % bytes, 0u);
   Packer packer;
@@ -210,15 +211,15 @@ ToneCounts pack_rows(const Vec3* radiance, int width, int height, int row_begin,
   auto rows = bytes == 2   ? (dither ? pack_rows_of<2, true> : pack_rows_of<2, false>)
               : bytes == 3 ? (dither ? pack_rows_of<3, true> : pack_rows_of<3, false>)
                            : (dither ? pack_rows_of<4, true> : pack_rows_of<4, false>);
-  return rows(radiance, width, height, row_begin, row_end, exposure, packer, rotation,
+  return rows(radiance, width, height, row_begin, row_end, display, packer, rotation,
               static_cast<unsigned char*>(pixels), line_bytes);
 }
 
-void pack_spans(const Vec3* radiance, int width, const Span* spans, std::uint32_t span_count, float exposure,
+void pack_spans(const Vec3* radiance, int width, const Span* spans, std::uint32_t span_count, const Display& display,
                 const PixelFormat& format, bool dither, std::uint8_t* pixels) {
   CHECK(pixel_format_valid(format));
   CHECK(span_count == 0 || (radiance != nullptr && spans != nullptr && pixels != nullptr));
-  CHECK_GE(exposure, 0);
+  CHECK_GE(display.exposure, 0);
   Packer packer;
   make_packer(format, &packer);
   int bytes = format.bits_per_pixel / 8;
@@ -229,7 +230,7 @@ void pack_spans(const Vec3* radiance, int width, const Span* spans, std::uint32_
     const Vec3* in = radiance + static_cast<std::size_t>(span.row) * static_cast<std::size_t>(width);
     const std::uint16_t* thresholds = kBayer.offset[span.row & 7];
     for (int column = span.column_begin; column < span.column_end; ++column, pixels += bytes) {
-      Vec3 c = in[column] * exposure;
+      const Vec3 c = toned(in[column] * display.exposure, display.tone);
       std::uint32_t pixel = dither ? packed<true>(packer, c, thresholds, column, &counts)
                                    : packed<false>(packer, c, thresholds, column, &counts);
       store_unaligned(pixels, pixel, bytes);

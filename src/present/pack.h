@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "base/span.h"
-#include "base/vec3.h"
+#include "base/tone.h"
 #include "present/tonemap.h"
 
 namespace pocketray {
@@ -61,15 +61,14 @@ std::uint32_t read_pixel(const PixelFormat& format, const void* pixel);
 void write_pixel(const PixelFormat& format, void* pixel, std::uint32_t value);
 
 // Packs rows [row_begin, row_end). `radiance` is the whole picture, width × height, row 0 on top; `pixels` is the
-// screen's top left, `line_bytes` (a multiple of 2 or 4 for 16 or 32 bits) the distance between screen rows. Displays
-// exposure × radiance. `dither`: ordered, 8 × 8, fixed to the picture in any rotation; its mean over a tile is within
-// 1/64 step of the display value. Returns counts of values that could not be shown. Several threads may pack rows at
-// once.
-ToneCounts pack_rows(const Vec3* radiance, int width, int height, int row_begin, int row_end, float exposure,
+// screen's top left, `line_bytes` (a multiple of 2 or 4 for 16 or 32 bits) the distance between screen rows. `dither`:
+// ordered, 8 × 8, fixed to the picture in any rotation; its mean over a tile is within 1/64 step of the display value.
+// Returns counts of values that could not be shown. Several threads may pack rows at once.
+ToneCounts pack_rows(const Vec3* radiance, int width, int height, int row_begin, int row_end, const Display& display,
                      const PixelFormat& format, Rotation rotation, bool dither, void* pixels, int line_bytes);
 
 // Packs the pixels of the spans, consecutive and unpadded, into the bytes that pack_rows() writes without rotation.
-void pack_spans(const Vec3* radiance, int width, const Span* spans, std::uint32_t span_count, float exposure,
+void pack_spans(const Vec3* radiance, int width, const Span* spans, std::uint32_t span_count, const Display& display,
                 const PixelFormat& format, bool dither, std::uint8_t* pixels);
 
 }  // namespace pocketray

@@ -56,7 +56,7 @@ AovPicture color_aov(Aov aov, const PixelBox& box, Renderer* renderer) {
     if (!is_zero(*p)) range = merge(range, *p);
   });
   for_each_pixel(box, renderer, [&](Vec3* p) { *p = color_of(aov, *p, most, range); });
-  renderer->view.exposure = 1;
+  renderer->view.exposure = 1, renderer->settings.tone = Tone::clip;
   AovPicture picture;
   const int width = box.height >= 3 * kLegendHeight ? box.width : 0;  // it hides at most a third of the picture
   char high[24];

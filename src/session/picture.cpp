@@ -53,7 +53,7 @@ void pack(const PictureOptions& o, const Renderer& renderer, const PixelFormat& 
     repack_rows(o.packed_format, o.packed, o.packed_line_bytes, width, height, box.top, end, format, rotation, pixels,
                 row_bytes);
   else
-    pack_rows(radiance_of(o, renderer), width, height, box.top, end, renderer.view.exposure, format, rotation, dither,
+    pack_rows(radiance_of(o, renderer), width, height, box.top, end, display_of(renderer), format, rotation, dither,
               pixels, row_bytes);
   if (o.legend && o.legend->text[0])
     draw_legend({pixels, row_bytes, format, width, height, rotation}, box.left, end - kLegendHeight, *o.legend);

@@ -34,7 +34,8 @@ constexpr const char* kNoEnvironment = "none";
 
 struct CommonOptions {
   std::string scene;
-  std::string size, memory, effects = "auto", camera, exposure, json, device, emulate, isa, accel = "auto";
+  std::string size, memory, effects = "auto", camera, exposure, tone = "clip", json, device, emulate, isa,
+                            accel = "auto";
   std::string background, light = "key", fov;  // empty: the scene's
   std::string environment;                     // import/environment.h; empty: the scene's
   std::string focus;                           // a part of the model; empty: all of it

@@ -21,11 +21,21 @@ struct ColorRange {
   void add(const Vec3& radiance) { low = min(low, radiance), high = max(high, radiance); }
 };
 
+// A channel's radiance as displayed, in proportion to the radiance that is shown as white. Shoulders are taken channel
+// by channel.
+float displayed(float radiance, const FrameData& frame) {
+  const float white = frame.selection.white;
+  if (frame.settings.tone == Tone::clip) return std::min(radiance, white);
+  const float exposed = radiance / white;
+  return with_shoulder({exposed, exposed, exposed}).x * white;
+}
+
 // Returns whether the Michelson contrast as displayed, including the display's own reflection, is below `contrast`.
 // False for non-finite radiances.
-bool is_low_contrast(const ColorRange& range, const Selection& selection, float contrast) {
+bool is_low_contrast(const ColorRange& range, const FrameData& frame, float contrast) {
+  const Selection& selection = frame.selection;
   for (int c = 0; c < 3; ++c) {
-    const float high = std::min(range.high[c], selection.white), low = std::min(range.low[c], selection.white);
+    const float high = displayed(range.high[c], frame), low = displayed(range.low[c], frame);
     if (!(high - low < contrast * (high + low + selection.flare))) return false;
   }
   return true;

@@ -41,7 +41,7 @@ bool fill_block(const OpenWindow& window, std::uint32_t left, std::uint32_t top,
       const std::uint32_t column = std::min(std::max(left + x, 1u) - 1, settings.width - 1);
       Vec3 share = {0, 0, 0};
       if (window.state(column, row) == kKnown) {  // otherwise it is not around a wanted pixel
-        const Vec3 radiance = window.rows.at(column, row) * exposure;
+        const Vec3 radiance = toned(window.rows.at(column, row) * exposure, settings.tone);
         for (int c = 0; c < 3; ++c) share[c] = radiance[c] > 0 ? (radiance[c] < 1 ? radiance[c] : 1) : 0;  // 0 for NaN
       }
       low = min(low, share), high = max(high, share);

@@ -29,7 +29,7 @@ struct Geometry {
 // Thresholds for the pixels that selective rendering interpolates; selective.h.
 struct Selection {
   float contrast = 0;          // Michelson, as displayed; lower contrast is invisible. 0: every pixel is traced
-  float white = 0, flare = 0;  // radiances: the largest displayed, and twice what the display reflects
+  float white = 0, flare = 0;  // radiances: that of exposure 1, and twice what the display reflects
 };
 
 // Rays that are kept for later, width × height per sample; null: not kept.

@@ -348,7 +348,7 @@ Status step_with_servers(Viewer* viewer, Renderer* renderer, ViewerLoop* loop) {
 void pack_picture(const Viewer& viewer, const Renderer& renderer, const Vec3* radiance, int row_begin, int row_end,
                   const platform::Page& page) {
   if (!viewer.picture_merged) {
-    pack_rows(radiance, viewer.width, viewer.height, row_begin, row_end, renderer.view.exposure, viewer.format,
+    pack_rows(radiance, viewer.width, viewer.height, row_begin, row_end, display_of(renderer), viewer.format,
               viewer.rotation, viewer.options.dither, page.pixels, page.line_bytes);
     return;
   }

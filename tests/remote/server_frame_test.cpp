@@ -54,7 +54,7 @@ TEST_CASE("server_frames_equal_local_ones") {
   check_frame(&client, request, MessageType::frame_change);
   request.frame = 7, request.format = WireFormat::rgb888, request.dither = false, request.coding = RowCoding::lossless;
   check_frame(&client, request);
-  request.frame = 8, request.camera_stated = false, request.exposure = 0;
+  request.frame = 8, request.camera_stated = false, request.exposure = 0, request.settings.tone = Tone::film;
   check_frame(&client, request);
   request = frame_request("statue", 9, 40, 30);
   request.settings.samples_per_pixel = 4, request.chunk_rows = 7, request.coding = RowCoding::raw;

@@ -259,7 +259,7 @@ std::vector<std::uint8_t> rendered_here(const FrameRequest& request, const Scene
   int width = static_cast<int>(request.settings.width), height = static_cast<int>(request.settings.height);
   int line_bytes = width * static_cast<int>(pixel_bytes(request.format));
   std::vector<std::uint8_t> pixels(static_cast<std::size_t>(line_bytes) * request.settings.height);
-  pack_rows(r->image.data, width, height, 0, height, r->view.exposure,
+  pack_rows(r->image.data, width, height, 0, height, display_of(*r),
             request.format == WireFormat::rgb565 ? kRgb565 : kRgb888, Rotation::none, request.dither, pixels.data(),
             line_bytes);
   return pixels;

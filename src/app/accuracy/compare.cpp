@@ -151,7 +151,8 @@ Status compare_light(const LinearPicture& reference, const LinearPicture& test, 
   for (std::size_t i = 0; i < a.size(); i += 3)
     if (!std::equal(&a[i], &a[i] + 3, &b[i])) ++c->differing_count;
   auto encoded = [&](const LinearPicture& picture, double exposure) {
-    return encoded_light(exposed_light(picture.radiance.data(), picture.radiance.size(), static_cast<float>(exposure)));
+    return encoded_light(
+        displayed_light(picture.radiance.data(), picture.radiance.size(), static_cast<float>(exposure)));
   };
   const std::vector<float> shown = encoded(reference, c->exposure), judged = encoded(test, c->exposure * c->scale);
   compare_displayed(shown, judged, reference.width, reference.height, pixels_per_degree, c);

@@ -73,7 +73,7 @@ void print_regions(const std::vector<RegionError>& regions) {
 
 Status tell(const ReferenceCommand& c, const Rig& rig, const Accumulation& sum) {
   ReferencePictures p;
-  develop(sum, static_cast<double>(rig.opened.renderer.view.exposure), c.goal.pixels_per_degree, &p);
+  develop(sum, display_of(rig.opened.renderer), c.goal.pixels_per_degree, &p);
   std::vector<RegionError> regions = region_errors(p, sum.width, sum.height, c.goal.pixels_per_degree);
   const std::string& json = c.options.common.json;
   if (json != "-") {

@@ -6,16 +6,21 @@
 
 namespace pocketray {
 
-std::vector<double> exposed_light(const Vec3* radiance, std::size_t pixel_count, float exposure) {
+std::vector<double> displayed_light(const Vec3* radiance, std::size_t pixel_count, const Display& display) {
   CHECK(radiance != nullptr || pixel_count == 0);
-  CHECK_GT(exposure, 0);
+  CHECK_GT(display.exposure, 0);
   std::vector<double> light;
   light.reserve(3 * pixel_count);
-  for (std::size_t i = 0; i < pixel_count; ++i)
+  for (std::size_t i = 0; i < pixel_count; ++i) {
+    const double exposure = static_cast<double>(display.exposure);
+    const double most = exposure * static_cast<double>(max_component(radiance[i]));
+    const bool bright = display.tone == Tone::film && most > static_cast<double>(kShoulder) && std::isfinite(most);
+    const double scale = bright ? exposure * (1 - 0.25 / most) / most : exposure;
     for (int c = 0; c < 3; ++c) {
-      double value = static_cast<double>(radiance[i][c]) * static_cast<double>(exposure);
+      const double value = static_cast<double>(radiance[i][c]) * scale;
       light.push_back(!(value > 0) ? 0 : value < 1 ? value : 1);
     }
+  }
   return light;
 }
 
@@ -27,11 +32,11 @@ std::vector<float> encoded_light(const std::vector<double>& light) {
   return encoded;
 }
 
-std::vector<std::uint8_t> packed_pixels(const Vec3* radiance, std::uint32_t width, std::uint32_t height, float exposure,
-                                        const OutputFormat& output) {
+std::vector<std::uint8_t> packed_pixels(const Vec3* radiance, std::uint32_t width, std::uint32_t height,
+                                        const Display& display, const OutputFormat& output) {
   const int line_bytes = static_cast<int>(width) * output.format.bits_per_pixel / 8, rows = static_cast<int>(height);
   std::vector<std::uint8_t> pixels(static_cast<std::size_t>(line_bytes) * height);  // from the heap: aligned
-  pack_rows(radiance, static_cast<int>(width), rows, 0, rows, exposure, output.format, Rotation::none, output.dither,
+  pack_rows(radiance, static_cast<int>(width), rows, 0, rows, display, output.format, Rotation::none, output.dither,
             pixels.data(), line_bytes);
   return pixels;
 }
@@ -51,9 +56,9 @@ Levels unpacked_levels(const std::uint8_t* pixels, std::uint32_t width, std::uin
   return levels;
 }
 
-Levels displayed_levels(const Vec3* radiance, std::uint32_t width, std::uint32_t height, float exposure,
+Levels displayed_levels(const Vec3* radiance, std::uint32_t width, std::uint32_t height, const Display& display,
                         const OutputFormat& output) {
-  return unpacked_levels(packed_pixels(radiance, width, height, exposure, output).data(), width, height, output.format);
+  return unpacked_levels(packed_pixels(radiance, width, height, display, output).data(), width, height, output.format);
 }
 
 std::vector<float> encoded_levels(const Levels& levels) {

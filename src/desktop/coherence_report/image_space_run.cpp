@@ -127,15 +127,15 @@ void begin_ways(const FrameImage& first, const RenderCost& cost, ImageSpaceRun* 
 }  // namespace
 
 void add_errors(const FrameImage& whole, const FrameImage& image, std::uint32_t width, std::uint32_t height,
-                float exposure, ImageSpaceErrors* errors) {
+                const Display& display, ImageSpaceErrors* errors) {
   CHECK_EQ(whole.size(), std::size_t(width) * height);
   CHECK_EQ(image.size(), whole.size());
   std::uint64_t wrong = 0;
   for (std::size_t i = 0; i < whole.size(); ++i) wrong += differs(whole[i], image[i]);
   errors->wrong += wrong, errors->wrong_most = std::max(errors->wrong_most, wrong);
   if (wrong == 0) return;
-  const Levels truth = displayed_levels(whole.data(), width, height, exposure, kShown);
-  const Levels shown = displayed_levels(image.data(), width, height, exposure, kShown);
+  const Levels truth = displayed_levels(whole.data(), width, height, display, kShown);
+  const Levels shown = displayed_levels(image.data(), width, height, display, kShown);
   std::uint64_t wrong_shown = 0;
   for (std::size_t i = 0; i < whole.size(); ++i)
     wrong_shown += !std::equal(&truth.rgb[3 * i], &truth.rgb[3 * i] + 3, &shown.rgb[3 * i]);
@@ -177,7 +177,7 @@ Status run_image_space(Renderer* renderer, const FrameRange& range, Progress* pr
       CHECK_LE(traced, (std::uint64_t(count) + 1) * whole[0].size());
       add(cost, &f->cost), f->traced += traced;
       for (std::uint32_t k = 1; k <= count; ++k)
-        add_errors(whole[k], group[k], run->width, run->height, renderer->view.exposure, &f->errors);
+        add_errors(whole[k], group[k], run->width, run->height, display_of(*renderer), &f->errors);
       show_progress(progress, done += count);
     }
     if (interrupted) break;

@@ -49,9 +49,9 @@ struct ImageSpaceRun {
 // Frames are rendered in groups. Every variant traces the first frame whole, Chapman also the last one.
 constexpr std::uint32_t kGroupFrames = 16;
 
-// Compares a frame with the whole frame, as shown at that exposure, and adds to the errors.
+// Compares a frame with the whole frame, as displayed, and adds to the errors.
 void add_errors(const FrameImage& whole, const FrameImage& image, std::uint32_t width, std::uint32_t height,
-                float exposure, ImageSpaceErrors* errors);
+                const Display& display, ImageSpaceErrors* errors);
 
 // Number of steps of progress.
 std::uint64_t image_space_step_count(const FrameRange& range);

@@ -67,10 +67,10 @@ Status check_equal(const Vec3* whole, const Vec3* coherent, const SequenceRun& r
 }
 
 // Counts differences from the last frame. Leaves the frame as shown in last_shown.
-void count_changes(const Vec3* image, const Vec3* last, float exposure, const SequenceRun& run, PendingFrames* batch,
-                   FrameFigures* figures) {
+void count_changes(const Vec3* image, const Vec3* last, const Display& display, const SequenceRun& run,
+                   PendingFrames* batch, FrameFigures* figures) {
   const int width = static_cast<int>(run.width), height = static_cast<int>(run.height);
-  pack_rows(image, width, height, 0, height, exposure, kRgb888, Rotation::none, false, batch->shown.data(), 3 * width);
+  pack_rows(image, width, height, 0, height, display, kRgb888, Rotation::none, false, batch->shown.data(), 3 * width);
   const std::size_t pixels = std::size_t(run.width) * run.height;
   for (std::size_t i = 0; i < pixels; ++i) {
     figures->changed += last == nullptr || std::memcmp(&image[i], &last[i], sizeof(Vec3)) != 0;
@@ -136,14 +136,14 @@ Status render_batch(const CoherencePair& pair, std::uint32_t first, std::size_t 
 }
 
 // Compares finished frames and keeps their figures.
-Status keep_batch(std::size_t finished, float exposure, PendingFrames* batch, SequenceRun* run) {
+Status keep_batch(std::size_t finished, const Display& display, PendingFrames* batch, SequenceRun* run) {
   const std::size_t pixels = std::size_t(run->width) * run->height;
   for (std::size_t i = 0; i < finished; ++i) {
     FrameFigures* f = &batch->figures[i];
     const Vec3* image = &batch->coherent[i * pixels];
     RETURN_IF_ERROR(check_equal(&batch->whole[i * pixels], image, *run, f->frame));
     const Vec3* last = run->frames.empty() ? nullptr : i > 0 ? image - pixels : batch->last.data();
-    count_changes(image, last, exposure, *run, batch, f);
+    count_changes(image, last, display, *run, batch, f);
     CHECK_GE(f->retraced, f->changed);
     if (RetracedPicture* picture = picture_of(f->frame, run)) color_picture(batch->last_shown, picture);
     run->frames.push_back(*f);
@@ -223,7 +223,7 @@ Status run_sequence(const CoherencePair& pair, const FrameRange& range, Progress
     const std::uint64_t before = done + 2 * (first - range.first);
     status =
         render_batch(pair, static_cast<std::uint32_t>(first), frame_count, before, progress, &batch, run, &finished);
-    if (status.ok) status = keep_batch(finished, pair.coherent->view.exposure, &batch, run);
+    if (status.ok) status = keep_batch(finished, display_of(*pair.coherent), &batch, run);
     complete = finished == frame_count;
   }
   unseal_memory();

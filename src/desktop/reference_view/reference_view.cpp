@@ -136,13 +136,13 @@ std::vector<Vec3> mean_of_seeds(const ReferenceView& view, std::initializer_list
 // Call when all pixels have equally many samples.
 void measure_errors(ReferenceView* view, const Renderer& renderer) {
   SealPause pause;
-  std::vector<double> light = exposed_light(renderer.image.data, renderer.image.count, renderer.view.exposure);
+  std::vector<double> light = displayed_light(renderer.image.data, renderer.image.count, display_of(renderer));
   std::vector<double> seeds[kSeedCount];
   for (std::uint32_t seed = 0; seed < kSeedCount; ++seed)
-    seeds[seed] = exposed_light(mean_of_seeds(*view, {seed}).data(), view->shown.size(), renderer.view.exposure);
+    seeds[seed] = displayed_light(mean_of_seeds(*view, {seed}).data(), view->shown.size(), display_of(renderer));
   std::vector<double> mean =
-      exposed_light(mean_of_seeds(*view, {0, 1}).data(), view->shown.size(), renderer.view.exposure);
-  Levels levels = displayed_levels(renderer.image.data, view->width, view->height, renderer.view.exposure,
+      displayed_light(mean_of_seeds(*view, {0, 1}).data(), view->shown.size(), display_of(renderer));
+  Levels levels = displayed_levels(renderer.image.data, view->width, view->height, display_of(renderer),
                                    kOutputFormats[view->output]);
   view->errors.flip = mean_of(
       flip_errors(encoded_light(mean), encoded_levels(levels), view->width, view->height, kHandheldPixelsPerDegree));

@@ -246,7 +246,7 @@ Status render_path(const SplitSetup& setup, std::uint64_t* frames_done, Progress
       if (!status.ok || !*complete) break;
       show_progress(progress, ++*frames_done);
       const std::vector<std::uint8_t> pixels =
-          packed_pixels(device->image.data, frames->width, frames->height, device->view.exposure, frames->output);
+          packed_pixels(device->image.data, frames->width, frames->height, display_of(*device), frames->output);
       if (settings.indirect == kept.indirect)
         frames->steps.push_back(
             encoded_levels(unpacked_levels(pixels.data(), frames->width, frames->height, frames->output.format)));

@@ -17,7 +17,7 @@ Status find_levels(const AccuracyOptions& options, Rig* rig, const Configuration
                    double* bytes_per_frame) {
   const Renderer& renderer = rig->opened.renderer;
   *levels = displayed_levels(renderer.image.data, renderer.settings.width, renderer.settings.height,
-                             renderer.view.exposure, kOutputFormats[configuration.output]);
+                             display_of(renderer), kOutputFormats[configuration.output]);
 #ifdef POCKETRAY_HAVE_NETWORK
   if (!bytes_per_frame && !configuration.near_lossless) return success();
   SentPicture sent;
@@ -51,7 +51,7 @@ Status find_errors(const AccuracyOptions& options, const Judges& judges, bool co
   Levels levels;
   RETURN_IF_ERROR(find_levels(options, rig, configuration, &levels, counts_bytes ? &f->bytes_per_frame : nullptr));
   if (interrupted) return success();
-  std::vector<double> light = exposed_light(renderer.image.data, renderer.image.count, renderer.view.exposure);
+  std::vector<double> light = displayed_light(renderer.image.data, renderer.image.count, display_of(renderer));
   CHECK_EQ(light.size(), judges.model.mean.size());
   const double ppd = options.pixels_per_degree;
   const auto shown = encoded_levels(levels);
@@ -61,7 +61,7 @@ Status find_errors(const AccuracyOptions& options, const Judges& judges, bool co
     double* flip = &f->flip_as[static_cast<std::size_t>(i)];
     *flip = f->truth.flip;
     if (i == configuration.output) continue;
-    const Levels as = displayed_levels(renderer.image.data, width, height, renderer.view.exposure, kOutputFormats[i]);
+    const Levels as = displayed_levels(renderer.image.data, width, height, display_of(renderer), kOutputFormats[i]);
     *flip = mean_of(flip_errors(judges.truth.encoded, encoded_levels(as), width, height, ppd));
     *flip = std::max(*flip - noise, 0.0);
   }

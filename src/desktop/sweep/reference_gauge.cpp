@@ -15,8 +15,7 @@ constexpr double kFlipFall = 0.35;
 
 double own_flip(const ReferenceGauge& gauge) {
   ReferencePictures pictures;
-  develop(*gauge.accumulation, static_cast<double>(gauge.rig->opened.renderer.view.exposure),
-          gauge.goal.pixels_per_degree, &pictures);
+  develop(*gauge.accumulation, display_of(gauge.rig->opened.renderer), gauge.goal.pixels_per_degree, &pictures);
   return pictures.flip;
 }
 

@@ -21,17 +21,16 @@ std::vector<float> half_flips(const ReferencePictures& p, std::uint32_t width, s
 
 }  // namespace
 
-void develop(const Accumulation& a, double exposure, double ppd, ReferencePictures* p) {
-  CHECK(p != nullptr && exposure > 0);
+void develop(const Accumulation& a, const Display& display, double ppd, ReferencePictures* p) {
+  CHECK(p != nullptr && display.exposure > 0);
   std::vector<Vec3> one = mean_of_half(a, 0), other = mean_of_half(a, 1), mean(one.size());
   for (std::size_t i = 0; i < mean.size(); ++i) mean[i] = one[i] * 0.5f + other[i] * 0.5f;
-  auto factor = static_cast<float>(exposure);
-  p->one = exposed_light(one.data(), one.size(), factor);
-  p->other = exposed_light(other.data(), other.size(), factor);
-  p->mean = exposed_light(mean.data(), mean.size(), factor);
+  p->one = displayed_light(one.data(), one.size(), display);
+  p->other = displayed_light(other.data(), other.size(), display);
+  p->mean = displayed_light(mean.data(), mean.size(), display);
   p->encoded_one = encoded_light(p->one), p->encoded_other = encoded_light(p->other);
   p->encoded = encoded_light(p->mean);
-  p->levels = displayed_levels(mean.data(), a.width, a.height, factor, kOutputFormats[find_output_format("rgb888")]);
+  p->levels = displayed_levels(mean.data(), a.width, a.height, display, kOutputFormats[find_output_format("rgb888")]);
   p->samples = samples_of(a);
   p->rmse = reference_error(p->one, p->other);
   p->flip = mean_of(half_flips(*p, a.width, a.height, ppd));

@@ -13,7 +13,8 @@ struct ReferencePictures {
 };
 
 // Makes the pictures of an accumulation, at the rig's exposure.
-void develop(const Accumulation& accumulation, double exposure, double pixels_per_degree, ReferencePictures* pictures);
+void develop(const Accumulation& accumulation, const Display& display, double pixels_per_degree,
+             ReferencePictures* pictures);
 
 // Own error of one region in a grid that is as even as whole pixels allow, row by row from the top.
 struct RegionError {

@@ -116,7 +116,7 @@ Status render_reference(const AccuracyOptions& options, Transport transport, con
     state->references.push_back(name);
     RETURN_IF_ERROR(save_state(options.folder, *state));
   }
-  develop(accumulation, static_cast<double>(rig->opened.renderer.view.exposure), options.pixels_per_degree, pictures);
+  develop(accumulation, display_of(rig->opened.renderer), options.pixels_per_degree, pictures);
   return success();
 }
 

@@ -77,7 +77,7 @@ Status open_with(const AccuracyOptions& options, const CommonOptions& common, co
     if (renderer->view.animation != 0) rig->scene_hash += ", animation " + common.animation;
     ContentHash identity;
     rig->has_own_look = common.background.empty() && common.environment.empty() &&
-                              common.light == CommonOptions().light && renderer->view.animation == 0;
+                        common.light == CommonOptions().light && renderer->view.animation == 0;
     if (!rig->has_own_look || !identify_scene(source, renderer, &identity).ok) return success();
     rig->front_path = front_path(common.scene, identity);
     rig->prices_path =
@@ -161,7 +161,7 @@ Status time_frame(Rig* rig, const Configuration& configuration, double seconds, 
       line_bytes = width * output.format.bits_per_pixel / 8;
   rig->packed.resize((static_cast<std::size_t>(line_bytes) * renderer->settings.height + 3) / 4);
   start = clock_ns();
-  pack_rows(renderer->image.data, width, height, 0, static_cast<int>(row_count(*rig)), renderer->view.exposure,
+  pack_rows(renderer->image.data, width, height, 0, static_cast<int>(row_count(*rig)), display_of(*renderer),
             output.format, Rotation::none, output.dither, rig->packed.data(), line_bytes);
   double pack_ns = static_cast<double>(clock_ns() - start);
   *ns_per_pixel = (frame_ns + pack_ns) / static_cast<double>(renderer->image.count);

@@ -208,7 +208,7 @@ void pack_device_rows(const Renderer& renderer, Client* client, std::uint32_t ro
   int width = static_cast<int>(renderer.settings.width), height = static_cast<int>(renderer.settings.height);
   bool small = client->options.format == WireFormat::rgb565;
   pack_rows(renderer.image.data, width, height, static_cast<int>(row_begin), static_cast<int>(row_end),
-            renderer.view.exposure, small ? kRgb565 : kRgb888, Rotation::none, client->options.dither,
+            display_of(renderer), small ? kRgb565 : kRgb888, Rotation::none, client->options.dither,
             client->picture.pixels.data, width * static_cast<int>(pixel_bytes(client->options.format)));
 }
 

@@ -251,7 +251,7 @@ void show_own_picture(Servers* servers, const Renderer& renderer) {
   const Client& client = connected(servers)->client;
   MergedPicture merged = merged_picture(*servers);
   int height = static_cast<int>(renderer.settings.height);
-  pack_rows(renderer.image.data, static_cast<int>(renderer.settings.width), height, 0, height, renderer.view.exposure,
+  pack_rows(renderer.image.data, static_cast<int>(renderer.settings.width), height, 0, height, display_of(renderer),
             merged.format, Rotation::none, client.options.dither, client.picture.pixels.data, merged.line_bytes);
 }
 

@@ -86,7 +86,7 @@ void render_pixels(Renderer* renderer, Client* client, std::uint32_t count) {
     const PixelCheck& p = *static_cast<PixelCheck*>(context);
     const Client& own = *p.client;
     pack_spans(p.renderer->image.data, static_cast<int>(own.settings.width), batch.spans, batch.span_count,
-               own.frame.request.exposure, pixel_format(own.options.format), own.options.dither,
+               {own.frame.request.exposure, own.settings.tone}, pixel_format(own.options.format), own.options.dither,
                own.verifier.pixels.data);
   };
   source.finished = [](void* context, const SpanBatch& batch) {

@@ -99,7 +99,7 @@ void send_coarse(Session* session) {
       const auto x = static_cast<std::uint16_t>(i * kCoarseSide);
       spans[i] = {static_cast<std::uint16_t>(row * kCoarseSide), x, static_cast<std::uint16_t>(x + 1)};
     }
-    pack_spans(renderer.image.data, static_cast<int>(renderer.settings.width), spans, columns, renderer.view.exposure,
+    pack_spans(renderer.image.data, static_cast<int>(renderer.settings.width), spans, columns, display_of(renderer),
                pack_format(request.format), request.dither, pixels);
     pixels += columns * pixel_bytes(request.format);
   }

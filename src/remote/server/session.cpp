@@ -217,7 +217,7 @@ void pack_session_rows(Session* session, std::uint32_t row_begin, std::uint32_t 
   CHECK(row_begin < row_end && row_end <= renderer.settings.height);
   const int width = static_cast<int>(renderer.settings.width);
   pack_rows(renderer.image.data, width, static_cast<int>(renderer.settings.height), static_cast<int>(row_begin),
-            static_cast<int>(row_end), renderer.view.exposure, pack_format(request.format), Rotation::none,
+            static_cast<int>(row_end), display_of(renderer), pack_format(request.format), Rotation::none,
             request.dither, session->pixels.data, width * static_cast<int>(pixel_bytes(request.format)));
 }
 

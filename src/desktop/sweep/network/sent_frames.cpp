@@ -47,7 +47,7 @@ Status send_frames(Rig* rig, const Configuration& configuration, double seconds,
     RETURN_IF_ERROR(render_frame(renderer, seconds, Aov::none, &interrupted));
     if (interrupted) return success();
     const std::vector<std::uint8_t> pixels =
-        packed_pixels(renderer->image.data, width, height, renderer->view.exposure, output);
+        packed_pixels(renderer->image.data, width, height, display_of(*renderer), output);
     const std::size_t sent_bytes = send_picture(&stream, pixels.data(), coding);
     if (left + 1 < kSentFrames) bytes += static_cast<double>(sent_bytes);
   }
