@@ -223,7 +223,7 @@ void add_look_options(Command command, CommonOptions* o, std::initializer_list<c
   Option environment = add_environment_option(command, &o->environment);
   Option background = command.add_option("--background COLOUR", o->background, "colour where nothing is hit")
                           .default_str("the scene's")
-                          .details("#rrggbb as displayed without exposure (quote it), or linear radiance as r,g,b.")
+                          .details("#rrggbb as displayed without exposure and tone (quote it), or linear radiance as r,g,b.")
                           .excludes(environment, "the environment is the background");
   Option light = command.add_option("--light NAME", o->light, "light for a scene that has none")
                      .one_of({"key", "sun", "none"})

@@ -238,6 +238,15 @@ pocketray_result pocketray_set_exposure(pocketray_instance* instance, float expo
   return POCKETRAY_OK;
 }
 
+pocketray_result pocketray_set_tone(pocketray_instance* instance, int tone) {
+  REFUSE_IF_ERROR(POCKETRAY_ERROR_ARGUMENT, check_instance(instance));
+  if (tone < 0 || tone >= kToneCount)
+    return refuse(POCKETRAY_ERROR_ARGUMENT, failure("the tone is %d: it must be 0 (clip) or 1 (film)", tone));
+  instance->renderer.settings.tone = static_cast<Tone>(tone);
+  instance->refining = false;
+  return POCKETRAY_OK;
+}
+
 pocketray_result pocketray_measure_exposure(pocketray_instance* instance, double seconds, float* exposure) {
   REFUSE_IF_ERROR(POCKETRAY_ERROR_ARGUMENT, check_instance(instance));
   REFUSE_IF_ERROR(POCKETRAY_ERROR_ARGUMENT, check_limit(Quantity::seconds, seconds));

@@ -105,7 +105,7 @@ bool is_flat(const FrameData& frame, const PixelCell& cell, float contrast) {
     range.add(corner->radiance);
   }
   if (first.material && has_texture(*frame.scene, *first.material)) return false;
-  return is_low_contrast(range, frame.selection, contrast);
+  return is_low_contrast(range, frame, contrast);
 }
 
 bool predict(const FrameData& frame, const PixelCell& cell, float contrast, const Surface& s, std::uint32_t column,
@@ -131,7 +131,7 @@ bool predict(const FrameData& frame, const PixelCell& cell, float contrast, cons
   }
   // Fewer corners must agree more closely.
   if (count < 2 || !(sum_weight > 0)) return false;
-  if (!is_low_contrast(range, frame.selection, 0.25f * static_cast<float>(count) * contrast)) return false;
+  if (!is_low_contrast(range, frame, 0.25f * static_cast<float>(count) * contrast)) return false;
   *radiance = sum * (1 / sum_weight);
   return true;
 }

@@ -27,7 +27,7 @@ bool same_runs(const FrameSignature& a, const FrameSignature& b) {
 FrameSignature signature_of(const FrameData& frame) {
   FrameSignature s;
   s.known = true;
-  s.quality = frame.settings;
+  s.quality = frame.settings, s.tone = frame.settings.tone;
   s.mask = frame.mask;
   s.camera = frame.view.camera;
   s.eye_media = frame.view.eye_media;
@@ -44,7 +44,7 @@ FrameSignature signature_of(const FrameData& frame) {
 const char* difference(const FrameSignature& a, const FrameSignature& b) {
   if (!a.known || !b.known) return "no previous frame";
   if (!same_camera(a.camera, b.camera)) return "the camera moved";
-  if (!same_quality(a.quality, b.quality) || a.mask != b.mask) return "the settings changed";
+  if (!same_quality(a.quality, b.quality) || a.mask != b.mask || a.tone != b.tone) return "the settings changed";
   if (a.left_out_max != b.left_out_max) return "the exposure changed";
   if (a.background != b.background || a.ambient != b.ambient ||
       !std::equal(a.indirect.prepared, a.indirect.prepared + IndirectList::kCount, b.indirect.prepared))

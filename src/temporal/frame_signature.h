@@ -8,6 +8,7 @@ namespace pocketray {
 struct FrameSignature {
   bool known = false;
   Quality quality;
+  Tone tone = Tone::clip;
   EffectMask mask = 0;
   CameraRays camera;
   MediumStack eye_media;

@@ -169,6 +169,7 @@ static void no_instance(void) {
   wrong("get_exposure", pocketray_get_exposure(NULL, rgb), part);
   wrong("set_exposure", pocketray_set_exposure(NULL, 1), part);
   wrong("measure_exposure", pocketray_measure_exposure(NULL, 0, rgb), part);
+  wrong("set_tone", pocketray_set_tone(NULL, POCKETRAY_TONE_FILM), part);
   wrong("render", pocketray_render(NULL, 0, &pixels), part);
   wrong("begin", pocketray_begin(NULL, 0), part);
   wrong("refine", pocketray_refine(NULL, 0, &pixels), part);
@@ -323,6 +324,8 @@ static void odd_nodes_and_exposures(pocketray_instance* instance) {
     wrong("exposure", pocketray_set_exposure(instance, odd_floats[i]), "exposure");
   }
   wrong("exposure", pocketray_set_exposure(instance, 0), "exposure");
+  wrong("tone", pocketray_set_tone(instance, 2), "the tone is 2");
+  wrong("tone", pocketray_set_tone(instance, -1), "the tone is -1");
   wrong("node", pocketray_set_node(instance, 1000, transform), "no node 1000");
   wrong("node", pocketray_get_node(instance, POCKETRAY_NONE, &node), "no node");
 }

@@ -395,6 +395,12 @@ static void exposure_is_set_and_measured(void) {
   EXPECT(before > 0 && after == before * 2);
   api_render(instance, 0, &brighter);
   EXPECT((brighter.pixel[30][45] & 255) > (first.pixel[30][45] & 255));
+  EXPECT_OK(pocketray_set_tone(instance, POCKETRAY_TONE_FILM));
+  api_render(instance, 0, &again);
+  EXPECT(!api_same(&brighter, &again)); /* the lamp is no longer white */
+  EXPECT_OK(pocketray_set_tone(instance, POCKETRAY_TONE_CLIP));
+  api_render(instance, 0, &again);
+  EXPECT(api_same(&brighter, &again));
   EXPECT_OK(pocketray_measure_exposure(instance, 0, &measured));
   EXPECT_OK(pocketray_get_exposure(instance, &after));
   EXPECT(measured > 0 && measured != before && after == measured);
