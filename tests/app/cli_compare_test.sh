@@ -77,6 +77,13 @@ expect rendered 0 'PSNR infinite.* 0 of 768 pixels' compare cube.pfm cube.pfm --
 check linear_map test "$(head -c 24 linear.png | tail -c 8 | od -An -tx1 | tr -d ' \n')" = 0000002000000018
 expect displayed_is_the_light 0 'PSNR infinite' compare cube.ppm cube.pfm
 expect light_is_the_displayed 0 'PSNR infinite' compare cube.pfm cube.ppm
+"${run[@]}" render cube --size 32x24 --exposure 2 --tone film -o film.ppm >/dev/null
+"${run[@]}" render cube --size 32x24 --exposure 2 --tone film -o film.pfm >/dev/null
+expect film_is_the_light 0 'PSNR infinite' compare film.ppm film.pfm --exposure 2 --tone film
+expect film_is_not_clipped 0 ' [1-9][0-9]* of 768 pixels differ' compare film.ppm film.pfm --exposure 2
+expect film_of_linear_light 0 'PSNR infinite' compare film.pfm cube.pfm --exposure 2 --tone film
+expect exposure_of_film_is_found 0 'aligned: exposure × (4 |4\.0|3\.9)' compare film.ppm film.pfm --align --tone film
+expect tone_of_levels 1 '--tone changes linear light' compare a.ppm b.ppm --tone film
 expect exposure_is_found 0 'aligned: exposure × (1 |1\.00|0\.99)' compare cube.ppm cube.pfm --align
 "${run[@]}" reference cube --size 32x24 --samples 16 -o reference.pfm >/dev/null
 expect reference 0 'linear light: RMSE 0\.' compare reference.pfm cube.pfm --align

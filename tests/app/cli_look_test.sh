@@ -32,20 +32,6 @@ check own_light_stays cmp -s own.ppm lit.ppm
 render "$subject" wide.ppm --fov 70 >/dev/null
 check fov_is_seen bash -c '! cmp -s own.ppm wide.ppm'
 
-# Goal: the film tone shows light beyond white; pictures of other quantities and linear light stay. Method: a background of
-# twice white, which clips to level 255 and becomes 1 − 1/8, level 240; depth and radiance of the same scene.
-expect tone_name 1 'tone.*sepia.*clip.*film' render cube "${small[@]}" --tone sepia -o refused.ppm
-bright=(--background 2,2,2 --exposure fixed)
-for tone in clip film; do
-  render cube $tone.ppm "${bright[@]}" --tone $tone >/dev/null
-  render cube $tone.pfm "${bright[@]}" --tone $tone >/dev/null
-  render cube depth_$tone.ppm "${bright[@]}" --tone $tone --aov depth >/dev/null
-done
-check clip_is_white test "$(first_pixel clip.ppm)" = ffffff
-check film_is_not test "$(first_pixel film.ppm)" = f0f0f0
-check radiance_has_no_tone cmp -s clip.pfm film.pfm
-check depth_has_no_tone cmp -s depth_clip.ppm depth_film.ppm
-
 # Goal: a model without light and camera gets those asked for, and without options the usual ones. Method: a triangle; the
 # corner of the picture shows the background, as levels and as radiance.
 if "${run[@]}" render --help | grep -q glTF; then
@@ -74,6 +60,20 @@ if "${run[@]}" render --help | grep -q glTF; then
   check usual_field_of_view cmp -s usual.ppm fov.ppm
   render model.obj narrow.ppm --fov 5 >/dev/null
   check narrow_field_of_view bash -c '! cmp -s usual.ppm narrow.ppm'
+
+  # Goal: the film tone shows light beyond white; pictures of other quantities and linear light stay. Method: a background of
+  # twice white, which clips to level 255 and becomes 1 − 1/8, level 240; depth and radiance of the same scene.
+  expect tone_name 1 'tone.*sepia.*clip.*film' render model.obj "${small[@]}" --tone sepia -o refused.ppm
+  bright=(--background 2,2,2 --exposure fixed)
+  for tone in clip film; do
+    render model.obj $tone.ppm "${bright[@]}" --tone $tone >/dev/null
+    render model.obj $tone.pfm "${bright[@]}" --tone $tone >/dev/null
+    render model.obj depth_$tone.ppm "${bright[@]}" --tone $tone --aov depth >/dev/null
+  done
+  check clip_is_white test "$(first_pixel clip.ppm)" = ffffff
+  check film_is_not test "$(first_pixel film.ppm)" = f0f0f0
+  check radiance_has_no_tone cmp -s clip.pfm film.pfm
+  check depth_has_no_tone cmp -s depth_clip.ppm depth_film.ppm
 
   # Goal: a black picture is explained in one line, which names the material where the file does. Method: a black triangle in
   # render, of a model, of what it bakes to and of a sequence; in view; not in a depth picture, nor the same in grey.

@@ -88,38 +88,42 @@ double exposure_of(const Development& development, const LinearPicture& light) {
   return development.measured ? exposure_to_middle_grey(light) : development.exposure;
 }
 
-// Sum of squared differences of displayed light from levels, both linear, of every `step`th channel.
-double displayed_squares(const std::vector<double>& shown, const std::vector<double>& radiance, double exposure,
-                         std::size_t step) {
+// Sum of squared differences of displayed light from levels, both linear, of every `step`th pixel.
+double displayed_squares(const std::vector<double>& shown, const std::vector<Vec3>& radiance, double exposure,
+                         Tone tone, std::size_t step) {
   CHECK_GT(step, 0u);
   double sum = 0;
-  for (std::size_t i = 0; i < shown.size(); i += step) {
-    const double difference = std::min(std::max(exposure * radiance[i], 0.0), 1.0) - shown[i];
-    sum += difference * difference;
+  for (std::size_t i = 0; i < radiance.size(); i += step) {
+    const double scale = display_scale(radiance[i], exposure, tone);
+    for (int c = 0; c < 3; ++c) {
+      const double light = std::min(std::max(scale * static_cast<double>(radiance[i][c]), 0.0), 1.0);
+      const double difference = light - shown[3 * i + static_cast<std::size_t>(c)];
+      sum += difference * difference;
+    }
   }
   return sum;
 }
 
 // The exposure at which displayed light is closest to the levels, in linear light; 0 if none is closer than black. A
 // scan finds the valley, since the sum has flat parts where all light is black or white.
-double exposure_of_levels(const Levels& levels, const LinearPicture& light) {
+double exposure_of_levels(const Levels& levels, const LinearPicture& light, Tone tone) {
   std::vector<double> shown;
   for (std::uint8_t level : levels.rgb) shown.push_back(static_cast<double>(srgb_to_linear(level)));
-  const std::vector<double> radiance = values_of(light);
-  constexpr std::size_t kScannedChannels = 1 << 16;
+  const std::vector<Vec3>& radiance = light.radiance;
+  constexpr std::size_t kScannedPixels = 1 << 15;
   constexpr double kScanStops = 0.25, kRefinedStops = 1e-5, kGolden = 0.6180339887498949;
-  const std::size_t step = 1 + shown.size() / kScannedChannels;
-  double best = 0, least = displayed_squares(shown, radiance, 0, step);
+  const std::size_t step = 1 + radiance.size() / kScannedPixels;
+  double best = 0, least = displayed_squares(shown, radiance, 0, tone, step);
   for (double stops = -kExposureStopsMax; stops <= kExposureStopsMax; stops += kScanStops) {
-    const double squares = displayed_squares(shown, radiance, std::exp2(stops), step);
+    const double squares = displayed_squares(shown, radiance, std::exp2(stops), tone, step);
     if (squares < least) least = squares, best = std::exp2(stops);
   }
   if (best == 0) return 0;
   double low = std::log2(best) - kScanStops, high = std::log2(best) + kScanStops;
   while (high - low > kRefinedStops) {
     const double one = high - kGolden * (high - low), other = low + kGolden * (high - low);
-    const bool lower =
-        displayed_squares(shown, radiance, std::exp2(one), 1) < displayed_squares(shown, radiance, std::exp2(other), 1);
+    const bool lower = displayed_squares(shown, radiance, std::exp2(one), tone, 1) <
+                       displayed_squares(shown, radiance, std::exp2(other), tone, 1);
     (lower ? high : low) = lower ? other : one;
   }
   return std::exp2(0.5 * (low + high));
@@ -151,8 +155,8 @@ Status compare_light(const LinearPicture& reference, const LinearPicture& test, 
   for (std::size_t i = 0; i < a.size(); i += 3)
     if (!std::equal(&a[i], &a[i] + 3, &b[i])) ++c->differing_count;
   auto encoded = [&](const LinearPicture& picture, double exposure) {
-    return encoded_light(
-        displayed_light(picture.radiance.data(), picture.radiance.size(), static_cast<float>(exposure)));
+    return encoded_light(displayed_light(picture.radiance.data(), picture.radiance.size(),
+                                         {static_cast<float>(exposure), development.tone}));
   };
   const std::vector<float> shown = encoded(reference, c->exposure), judged = encoded(test, c->exposure * c->scale);
   compare_displayed(shown, judged, reference.width, reference.height, pixels_per_degree, c);
@@ -216,10 +220,11 @@ Status compare_pictures(const AnyPicture& reference, const AnyPicture& test, con
   const LinearPicture& light = reference.is_linear ? reference.light : test.light;
   const Levels& levels = reference.is_linear ? test.levels : reference.levels;
   double exposure = exposure_of(development, light);
-  if (development.aligned) exposure = exposure_of_levels(levels, light);
+  if (development.aligned) exposure = exposure_of_levels(levels, light, development.tone);
   RETURN_IF_ERROR(check_exposure(exposure));
-  const Levels shown = displayed_levels(light.radiance.data(), light.width, light.height, static_cast<float>(exposure),
-                                        kOutputFormats[find_output_format("rgb888")]);
+  const Levels shown =
+      displayed_levels(light.radiance.data(), light.width, light.height,
+                       {static_cast<float>(exposure), development.tone}, kOutputFormats[find_output_format("rgb888")]);
   *comparison = reference.is_linear ? compare_levels(shown, levels, pixels_per_degree)
                                     : compare_levels(levels, shown, pixels_per_degree);
   comparison->has_exposure = true, comparison->exposure = exposure;

@@ -6,6 +6,7 @@
 
 #include "app/accuracy/linear_picture.h"
 #include "base/status.h"
+#include "base/tone.h"
 #include "desktop/accuracy/errors.h"
 #include "desktop/accuracy/result.h"
 
@@ -27,11 +28,12 @@ struct AnyPicture {
 // that are not finite.
 Status read_picture(const std::string& path, AnyPicture* picture);
 
-// How to develop linear light. The display shows exposure × radiance.
+// How to develop linear light. The display shows exposure × radiance, by the tone's curve.
 struct Development {
   bool measured = false;  // exposure: to middle grey, of the reference if that is linear, otherwise of the test
   double exposure = 1;    // otherwise this
-  bool aligned = false;   // scale the test's light to the reference's, or expose light to be closest to levels
+  Tone tone = Tone::clip;
+  bool aligned = false;  // scale the test's light to the reference's, or expose light to be closest to levels
 };
 
 struct Comparison {

@@ -17,7 +17,7 @@ namespace pocketray {
 namespace {
 
 struct CompareOptions {
-  std::string reference, test, map, json, exposure;
+  std::string reference, test, map, json, exposure, tone;
   bool align = false;
   double fail_above = 1;  // no ꟻLIP exceeds this
   double pixels_per_degree = kHandheldPixelsPerDegree;
@@ -29,14 +29,17 @@ Status read_development(const CompareOptions& o, const AnyPicture& reference, co
   float factor;
   RETURN_IF_ERROR(parse_exposure(o.exposure, &choice, &factor));
   const bool are_levels = !reference.is_linear && !test.is_linear, are_linear = reference.is_linear && test.is_linear;
-  if (are_levels && (o.align || !o.exposure.empty()))
+  if (are_levels && (o.align || !o.exposure.empty() || !o.tone.empty()))
     return failure("%s changes linear light, and neither picture has any: compare a .pfm or .exr, or drop it",
-                   o.align ? "--align" : "--exposure");
+                   o.align               ? "--align"
+                   : !o.exposure.empty() ? "--exposure"
+                                         : "--tone");
   if (!are_linear && o.align && !o.exposure.empty())
     return failure("--align finds the exposure of the linear picture: drop --exposure");
   development->measured = choice == ExposureChoice::measured;
   development->exposure = static_cast<double>(factor);
   development->aligned = o.align;
+  development->tone = o.tone == kToneNames[static_cast<int>(Tone::film)] ? Tone::film : Tone::clip;
   return success();
 }
 
@@ -137,6 +140,10 @@ void add_compare_command(Command program, int* exit_status) {
           "only that "
           "is "
           "linear, middle grey.");
+  command.add_option("--tone NAME", o->tone, "how linear light too bright for a display is shown")
+      .one_of({kToneNames[0], kToneNames[1]})
+      .default_str(kToneNames[0])
+      .details("As --tone of render, beside whose pictures of levels the light is compared.");
   command.add_flag("--align", o->align, "scale the light of B to match A, and print the factor")
       .details("Of a single linear picture, finds the exposure.");
   command.add_option("--pixels-per-degree,--ppd X", o->pixels_per_degree, "pixels per degree of visual angle")

@@ -6,16 +6,19 @@
 
 namespace pocketray {
 
+double display_scale(const Vec3& radiance, double exposure, Tone tone) {
+  const double most = exposure * static_cast<double>(max_component(radiance));
+  if (tone == Tone::clip || !(most > static_cast<double>(kShoulder)) || !std::isfinite(most)) return exposure;
+  return exposure * (1 - 0.25 / most) / most;
+}
+
 std::vector<double> displayed_light(const Vec3* radiance, std::size_t pixel_count, const Display& display) {
   CHECK(radiance != nullptr || pixel_count == 0);
   CHECK_GT(display.exposure, 0);
   std::vector<double> light;
   light.reserve(3 * pixel_count);
   for (std::size_t i = 0; i < pixel_count; ++i) {
-    const double exposure = static_cast<double>(display.exposure);
-    const double most = exposure * static_cast<double>(max_component(radiance[i]));
-    const bool bright = display.tone == Tone::film && most > static_cast<double>(kShoulder) && std::isfinite(most);
-    const double scale = bright ? exposure * (1 - 0.25 / most) / most : exposure;
+    const double scale = display_scale(radiance[i], static_cast<double>(display.exposure), display.tone);
     for (int c = 0; c < 3; ++c) {
       const double value = static_cast<double>(radiance[i][c]) * scale;
       light.push_back(!(value > 0) ? 0 : value < 1 ? value : 1);
