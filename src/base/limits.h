@@ -34,6 +34,7 @@ constexpr std::uint32_t kBrdfCountMax = 16;
 constexpr float kPhongExponentMax = 1e6f;  // HARDCASES row 31
 constexpr float kNormalScaleMax = 1000;    // steeper normals are horizontal within rounding
 constexpr float kIorMax = 100;
+constexpr float kFilmThicknessMax = 1e6f;           // nanometres
 constexpr std::uint32_t kSampleCountMax = 16;       // per pixel
 constexpr float kCutOffLevelsMax = 64;              // a quarter of the display's range
 constexpr std::uint32_t kRayDepthMax = 16;          // reflections and refractions along one path

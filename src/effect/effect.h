@@ -41,8 +41,11 @@ enum class Effect : std::uint8_t {
   clear_coat,
   sheen,
   edge_sampling,
+  transmission_map,
+  rough_refraction,
+  iridescence,
 };
-constexpr int kEffectCount = 36;
+constexpr int kEffectCount = 39;
 
 using EffectMask = std::uint64_t;
 constexpr EffectMask bit(Effect effect) { return EffectMask(1) << static_cast<int>(effect); }

@@ -82,6 +82,9 @@ constexpr EffectRow kEffectList[kEffectCount] = {
     {Effect::edge_sampling, "edge-sampling", "--edge-samples above 0", Reads::adjacent, Followed::by_neighbours,
      Shared::rows, bit(Effect::supersampling) | bit(Effect::selective) | bit(Effect::undersampling),
      "pixels at edges have more samples"},
+    {Effect::transmission_map, "transmission-map", "a material that transmits light, with textures"},
+    {Effect::rough_refraction, "rough-refraction", "a rough material that transmits light, such as frosted glass"},
+    {Effect::iridescence, "iridescence", "a material under a thin film, such as a soap bubble"},
 };
 
 // Returns the effects with the value in the column.

@@ -37,7 +37,7 @@ Status check_recolored(Renderer* renderer, std::uint32_t index, const Material& 
   CHECK_LT(index, renderer->materials.current.count);
   const Scene& scene = renderer->scene;
   CHECK(scene.materials.data == renderer->materials.current.data);
-  if (scene.material_maps.count && has_lobe_map(scene.material_maps[index]) &&
+  if (((scene.material_maps.count && has_lobe_map(scene.material_maps[index])) || glass_map_of(scene, index)) &&
       has_other_lobes(renderer->materials.current[index], material))
     return failure(
         "materials[%u]: a texture makes its diffuse, specular, mirror and transmission: change its colour texture",

@@ -9,6 +9,7 @@
 #include "base/fmath.h"
 #include "base/limits.h"
 #include "brdf/clear_coat.h"
+#include "brdf/iridescence.h"
 #include "brdf/linear_lobe.h"
 #include "brdf/sheen.h"
 #include "indirect/environment.h"
@@ -39,11 +40,15 @@ MaterialBound material_bound(const FrameData& frame, std::uint32_t index) {
   const Scene& scene = *frame.scene;
   CHECK_LT(index, scene.materials.count);
   const bool lit_by_environment = environment_lights(scene, frame.mask, frame.settings.indirect);
-  const bool mapped = has(frame.mask, Effect::metallic_roughness) && scene.material_maps.count;
-  Material m = mapped ? lobe_bounds(scene.materials[index], scene.material_maps[index]) : scene.materials[index];
+  const bool mapped = has(frame.mask, Effect::metallic_roughness) || has(frame.mask, Effect::transmission_map);
+  Material m = mapped ? lobe_bounds(scene, index) : scene.materials[index];
   const float diffuse = max_component(m.diffuse);
   const Sheen* sheen = has(frame.mask, Effect::sheen) ? sheen_of(scene, index) : nullptr;
   if (sheen) m.diffuse += sheen->color;  // for light from everywhere
+  if (has(frame.mask, Effect::iridescence) && iridescence_of(scene, index)) {
+    if (!is_zero(m.specular)) m.specular = {1, 1, 1};
+    if (!is_zero(m.mirror)) m.mirror = {1, 1, 1};
+  }
   const bool shines = m.unlit && has(frame.mask, Effect::emission);
   MaterialBound bound;
   bound.own = max_component(m.emission) + (shines ? max_component(m.diffuse) : indirect_bound(scene, m, frame.mask));

@@ -180,6 +180,11 @@ bool has_one_value(const Scene& scene, const TextureUse& use, std::uint8_t (&val
   });
 }
 
+// Returns whether a texture of numbers has no red.
+static bool is_without_red(const Scene& scene, const TextureUse& use) {
+  return every_texel(scene, use, [](const Texel& t) { return t.r == 0; });
+}
+
 static bool is_black(const Scene& scene, const TextureUse& use) {
   return every_texel(scene, use, [](const Texel& t) { return t.r == 0 && t.g == 0 && t.b == 0; });
 }
@@ -214,13 +219,17 @@ bool shows_occlusion(const Scene& scene, const MaterialMaps& maps) {
 
 bool shows_coat(const Scene& scene, const ClearCoat& coat) {
   if (!(coat.strength > 0)) return false;
-  return coat.strength_texture.texture == kNone ||
-         !every_texel(scene, coat.strength_texture, [](const Texel& t) { return t.r == 0; });
+  return coat.strength_texture.texture == kNone || !is_without_red(scene, coat.strength_texture);
 }
 
 bool shows_sheen(const Scene& scene, const Sheen& sheen) {
   if (is_zero(sheen.color)) return false;
   return sheen.color_texture.texture == kNone || !is_black(scene, sheen.color_texture);
+}
+
+bool shows_film(const Scene& scene, const Iridescence& film) {
+  if (!(film.strength > 0)) return false;
+  return film.strength_texture.texture == kNone || !is_without_red(scene, film.strength_texture);
 }
 
 bool shows_grain(const Scene& scene, const Grain& grain) {
@@ -247,6 +256,8 @@ bool passes_unchanged(const Scene& scene, std::uint32_t material) {
   if (!is_zero(m.diffuse) || !is_zero(m.specular) || !is_zero(m.mirror) || shows_emission(scene, material))
     return false;
   if (scene.sheens.count && shows_sheen(scene, scene.sheens[material])) return false;
+  if (scene.iridescences.count && shows_film(scene, scene.iridescences[material])) return false;
+  if (scene.glass_maps.count && scene.glass_maps[material].transmission > 0) return false;
   return scene.clear_coats.empty() || !shows_coat(scene, scene.clear_coats[material]);
 }
 

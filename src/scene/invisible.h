@@ -14,9 +14,11 @@ bool shows_emission(const Scene& scene, std::uint32_t material);
 bool shows_holes(const Scene& scene, std::uint32_t material);
 // Returns whether a blended material shows what is behind it: its alpha is below 1 somewhere.
 bool shows_background(const Scene& scene, std::uint32_t material);
-// Returns whether a clear coat is above 0 anywhere, and whether a sheen or a grain is: their textures may be black.
+// Returns whether a clear coat is above 0 anywhere, and whether a sheen, a film or a grain is: their textures may be
+// black.
 bool shows_coat(const Scene& scene, const ClearCoat& coat);
 bool shows_sheen(const Scene& scene, const Sheen& sheen);
+bool shows_film(const Scene& scene, const Iridescence& film);
 bool shows_grain(const Scene& scene, const Grain& grain);
 // Returns whether a normal texture leans normals anywhere.
 bool shows_normal_map(const Scene& scene, const TextureUse& normal, float scale);

@@ -7,9 +7,17 @@
 //   t' = t·(1 − m)                             glass; Fresnel gives it its mirror: mirror × (1 − t')
 //   transmission = c·t', diffuse = c·(1 − m)·(1 − t)
 #pragma once
+#include <cmath>
+
 #include "scene/scene.h"
 
 namespace pocketray {
+
+// k for a roughness r² = α of a material.
+inline float mirror_share(float alpha) {
+  const float k = 1 - std::sqrt(alpha) / 0.3f;
+  return k > 0 ? k * k : 0;
+}
 
 // Sets diffuse, specular, mirror, their tinted parts, transmission, roughness and grazing.
 inline void set_lobes(const MetallicRoughness& model, float metallic, float roughness, float transmission,
@@ -37,22 +45,35 @@ inline bool has_map(const MaterialMaps& maps) {
   return has_lobe_map(maps) || maps.normal.texture != kNone || maps.occlusion.texture != kNone;
 }
 
-// Upper bounds of the material's lobes under its maps, and the smallest roughness: all are monotonic in metallic and
-// roughness, so that their extremes are at the ends of the ranges. A specular texture only dims.
-inline Material lobe_bounds(Material m, const MaterialMaps& maps) {
-  if (!has_lobe_map(maps)) return m;
-  set_lobes(maps.model, maps.metallic_low, maps.roughness_low, 0, &m);
-  for (int i = 1; i < 4; ++i) {
+// Returns the material's textures of transmitted light, or null.
+inline const GlassMap* glass_map_of(const Scene& scene, std::uint32_t material) {
+  return scene.glass_maps.count && scene.glass_maps[material].transmission > 0 ? &scene.glass_maps[material] : nullptr;
+}
+
+// Upper bounds of the material's lobes under its maps, and the smallest roughness: all are monotonic in metallic,
+// roughness and transmission, so that their extremes are at the ends of the ranges. A specular texture only dims.
+// `glass` may be null.
+inline Material lobe_bounds(Material m, const MaterialMaps& maps, const GlassMap* glass) {
+  if (!has_lobe_map(maps) && !glass) return m;
+  const float most = glass ? glass->transmission : 0;
+  const float least = glass && glass->transmission_texture.texture == kNone ? most : 0;
+  set_lobes(maps.model, maps.metallic_low, maps.roughness_low, least, &m);
+  for (int i = 1; i < (glass ? 8 : 4); ++i) {
     Material end = m;
     set_lobes(maps.model, i & 1 ? maps.metallic_high : maps.metallic_low,
-              i & 2 ? maps.roughness_high : maps.roughness_low, 0, &end);
-    m.diffuse = max(m.diffuse, end.diffuse);
+              i & 2 ? maps.roughness_high : maps.roughness_low, i & 4 ? most : least, &end);
+    m.diffuse = max(m.diffuse, end.diffuse), m.transmission = max(m.transmission, end.transmission);
     m.specular = max(m.specular, end.specular), m.specular_tinted = max(m.specular_tinted, end.specular_tinted);
     m.mirror = max(m.mirror, end.mirror), m.mirror_tinted = max(m.mirror_tinted, end.mirror_tinted);
     if (end.roughness < m.roughness) m.roughness = end.roughness;
     if (end.grazing > m.grazing) m.grazing = end.grazing;
   }
   return m;
+}
+
+inline Material lobe_bounds(const Scene& scene, std::uint32_t material) {
+  const Material& m = scene.materials[material];
+  return scene.material_maps.count ? lobe_bounds(m, scene.material_maps[material], glass_map_of(scene, material)) : m;
 }
 
 }  // namespace pocketray

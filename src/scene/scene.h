@@ -148,6 +148,22 @@ struct Sheen {
   TextureUse color_texture, roughness_texture;
 };
 
+// Textures of a material that transmits light, see shade/transmission.h. The material's lobes at a point are those of
+// its MaterialMaps there; the colours of its texture and vertices tint what it transmits.
+struct GlassMap {
+  float transmission = 0;  // t of metallic_roughness.h, × R; 0: the material has no such textures
+  float thickness = 0;     // of a thin material, × G: it absorbs like a body of that thickness
+  TextureUse transmission_texture, thickness_texture;
+};
+
+// A thin film over a material, see brdf/iridescence.h. Textures have numbers for texels.
+struct Iridescence {
+  float strength = 0;                               // × R; 0: none
+  float ior = 1.3f;                                 // 1 to kIorMax
+  float thickness_low = 100, thickness_high = 400;  // nanometres where G is 0 and 255; without the texture, the latter
+  TextureUse strength_texture, thickness_texture;
+};
+
 // A unit vector in 127ths; zero: none. Handedness: above 0, the bitangent is normal × tangent, below 0 its opposite; 0:
 // by the first texture coordinates, against ∂P/∂v.
 struct PackedTangent {
@@ -313,8 +329,9 @@ enum class Invisible : std::uint32_t {
   black_coat,           // materials; so are the next
   black_grain,
   black_sheen,
+  black_film,
 };
-constexpr int kInvisibleCount = 19;
+constexpr int kInvisibleCount = 20;
 inline Invisible dark_light(LightKind kind) { return static_cast<Invisible>(9 + static_cast<int>(kind)); }
 inline Invisible distant_light(LightKind kind) { return static_cast<Invisible>(12 + static_cast<int>(kind)); }
 static_assert(static_cast<int>(Invisible::dark_point) == 9 && static_cast<int>(Invisible::distant_point) == 12,
@@ -376,6 +393,8 @@ struct Scene {
   Array<const Sheen> sheens;                     // one per material, or empty
   // One for each animation and one at time 0; or one; or none: measured at the start if needed.
   Array<const Framing> framings;
+  Array<const GlassMap> glass_maps;       // one per material, or empty
+  Array<const Iridescence> iridescences;  // likewise
 };
 
 inline bool is_animated(const Scene& scene) {

@@ -256,10 +256,12 @@ Status validate_scene(const Scene& scene) {
   RETURN_IF_ERROR(validate_counts(scene));
   RETURN_IF_ERROR(validate_geometry(scene));
   RETURN_IF_ERROR(validate_materials(scene));
+  RETURN_IF_ERROR(validate_glass_maps(scene));
   RETURN_IF_ERROR(validate_material_maps(scene));
   RETURN_IF_ERROR(validate_grains(scene));
   RETURN_IF_ERROR(validate_clear_coats(scene));
   RETURN_IF_ERROR(validate_sheens(scene));
+  RETURN_IF_ERROR(validate_iridescences(scene));
   RETURN_IF_ERROR(validate_lights_and_cameras(scene));
   RETURN_IF_ERROR(validate_default_view(scene));
   RETURN_IF_ERROR(validate_framings(scene));

@@ -1,4 +1,6 @@
 // Validates textures of materials.
+#include <initializer_list>
+
 #include "base/check.h"
 #include "scene/metallic_roughness.h"
 #include "scene/validate_checks.h"
@@ -50,12 +52,16 @@ Status validate_maps(const Scene& scene, std::uint32_t index) {
   RETURN_IF_ERROR(check_texture_use("material_maps", "occlusion", index, maps.occlusion, scene));
   RETURN_IF_ERROR(check_texture_use("material_maps", "specular", index, maps.specular, scene));
   RETURN_IF_ERROR(check_texture_use("material_maps", "specular_color", index, maps.specular_color, scene));
-  if (!has_lobe_map(maps)) return success();
-  if (m.unlit || !is_zero(m.transmission))
+  const bool is_glass = glass_map_of(scene, index) != nullptr;
+  if (!has_lobe_map(maps) && !is_glass) return success();
+  if (m.unlit || (!is_zero(m.transmission) && !is_glass))
     return failure("material_maps[%u] changes lobes: its material is unlit or transmits light", index);
   // Kernels decide by the mean lobe whether the material has one at all.
-  if (is_zero(m.specular) && !is_zero(lobe_bounds(m, maps).specular))
+  const Material most = lobe_bounds(scene, index);
+  if (is_zero(m.specular) && !is_zero(most.specular))
     return failure("material_maps[%u] makes a glossy lobe, but materials[%u] has none", index, index);
+  if (is_zero(m.transmission) && !is_zero(most.transmission))
+    return failure("glass_maps[%u] transmits light, but materials[%u] does not", index, index);
   return success();
 }
 
@@ -66,6 +72,16 @@ static Status validate_grain(const Scene& scene, std::uint32_t index) {
   if (!(d.x * d.x + d.y * d.y <= kGrainSquareMax))
     return failure("grains[%u].direction must not be longer than 1", index);
   return check_texture_use("grains", "texture", index, grain.texture, scene);
+}
+
+struct NamedUse {
+  const char* field;
+  const TextureUse* use;
+};
+static Status check_texture_uses(const char* array, std::uint32_t index, const Scene& scene,
+                                 std::initializer_list<NamedUse> uses) {
+  for (const NamedUse& named : uses) RETURN_IF_ERROR(check_texture_use(array, named.field, index, *named.use, scene));
+  return success();
 }
 
 static Status check_per_material(const char* array, std::uint32_t count, const Scene& scene) {
@@ -132,6 +148,50 @@ static Status validate_sheen(const Scene& scene, std::uint32_t index) {
 Status validate_sheens(const Scene& scene) {
   RETURN_IF_ERROR(check_per_material("sheens", scene.sheens.count, scene));
   for (std::uint32_t i = 0; i < scene.sheens.count; ++i) RETURN_IF_ERROR(validate_sheen(scene, i));
+  return success();
+}
+
+static Status validate_glass_map(const Scene& scene, std::uint32_t index) {
+  CHECK_LT(index, scene.glass_maps.count);
+  const GlassMap& glass = scene.glass_maps[index];
+  const FieldRange fields[] = {
+      {"transmission", glass.transmission, 0, 1},
+      {"thickness", glass.thickness, 0, kCoordinateMax},
+  };
+  RETURN_IF_ERROR(check_fields("glass_maps", index, fields));
+  if (glass.transmission > 0 && scene.material_maps.empty())
+    return failure("glass_maps[%u] needs material_maps, the scene has none", index);
+  return check_texture_uses(
+      "glass_maps", index, scene,
+      {{"transmission_texture", &glass.transmission_texture}, {"thickness_texture", &glass.thickness_texture}});
+}
+
+Status validate_glass_maps(const Scene& scene) {
+  RETURN_IF_ERROR(check_per_material("glass_maps", scene.glass_maps.count, scene));
+  for (std::uint32_t i = 0; i < scene.glass_maps.count; ++i) RETURN_IF_ERROR(validate_glass_map(scene, i));
+  return success();
+}
+
+static Status validate_iridescence(const Scene& scene, std::uint32_t index) {
+  CHECK_LT(index, scene.iridescences.count);
+  const Iridescence& film = scene.iridescences[index];
+  const FieldRange fields[] = {
+      {"strength", film.strength, 0, 1},
+      {"ior", film.ior, 1, kIorMax},
+      {"thickness_low", film.thickness_low, 0, kFilmThicknessMax},
+      {"thickness_high", film.thickness_high, 0, kFilmThicknessMax},
+  };
+  RETURN_IF_ERROR(check_fields("iridescences", index, fields));
+  if (film.strength > 0 && scene.materials[index].unlit)
+    return failure("iridescences[%u] covers materials[%u], which is unlit", index, index);
+  return check_texture_uses(
+      "iridescences", index, scene,
+      {{"strength_texture", &film.strength_texture}, {"thickness_texture", &film.thickness_texture}});
+}
+
+Status validate_iridescences(const Scene& scene) {
+  RETURN_IF_ERROR(check_per_material("iridescences", scene.iridescences.count, scene));
+  for (std::uint32_t i = 0; i < scene.iridescences.count; ++i) RETURN_IF_ERROR(validate_iridescence(scene, i));
   return success();
 }
 

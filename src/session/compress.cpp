@@ -49,6 +49,12 @@ std::map<std::uint32_t, Uses> find_uses(const Scene& scene) {
     note(sheen.color_texture, &Uses::color);
     note(sheen.roughness_texture, &Uses::color), note(sheen.roughness_texture, &Uses::alpha);
   }
+  for (const GlassMap& glass : scene.glass_maps) {
+    note(glass.transmission_texture, &Uses::red), note(glass.thickness_texture, &Uses::green_blue);
+  }
+  for (const Iridescence& film : scene.iridescences) {
+    note(film.strength_texture, &Uses::red), note(film.thickness_texture, &Uses::green_blue);
+  }
   return uses;
 }
 

@@ -4,6 +4,7 @@
 
 #include "base/check.h"
 #include "brdf/clear_coat.h"
+#include "brdf/iridescence.h"
 #include "brdf/sheen.h"
 #include "shade/contact.h"
 
@@ -56,6 +57,9 @@ bool has_texture(const Scene& scene, const Material& m) {
       if (use->texture != kNone) return true;
   if (const Sheen* sheen = sheen_of(scene, index))
     for (const TextureUse* use : {&sheen->color_texture, &sheen->roughness_texture})
+      if (use->texture != kNone) return true;
+  if (const Iridescence* film = iridescence_of(scene, index))
+    for (const TextureUse* use : {&film->strength_texture, &film->thickness_texture})
       if (use->texture != kNone) return true;
   if (scene.material_maps.empty()) return false;
   CHECK_LT(index, scene.material_maps.count);

@@ -17,10 +17,11 @@ constexpr EffectMask kContactEffects =
 constexpr EffectMask kGoesOn = (kContactEffects & ~bit(Effect::absorption)) | bit(Effect::mirror);
 constexpr EffectMask kLobeEffects = bit(Effect::specular) | bit(Effect::mirror);
 
-// Layers over the base. Their light is the business of one instance, that of coats.
-constexpr EffectMask kLayerEffects = bit(Effect::clear_coat) | bit(Effect::sheen);
+// Layers over the base, and what is rare in glass. Their light is the business of one instance, that of coats.
+constexpr EffectMask kLayerEffects = bit(Effect::clear_coat) | bit(Effect::sheen) | bit(Effect::transmission_map) |
+                                     bit(Effect::rough_refraction) | bit(Effect::iridescence);
 constexpr EffectMask as_coat(EffectMask plan) {
-  return has(plan, Effect::sheen) ? plan | bit(Effect::clear_coat) : plan;
+  return plan & kLayerEffects & kEffectsBuilt ? plan | bit(Effect::clear_coat) : plan;
 }
 
 // Effects of contacts whose code an instance of radiance holds, whether or not the plan has them.
@@ -67,10 +68,8 @@ constexpr InstanceTable<2> kGlowTable = {
 
 // Materials that vary by maps: material_maps.cpp.
 constexpr EffectMask kMapEffects = bit(Effect::metallic_roughness) | bit(Effect::normal_map) | bit(Effect::occlusion) |
-                                   bit(Effect::anisotropy) | bit(Effect::second_uv) | bit(Effect::clear_coat) |
-                                   bit(Effect::sheen);
-constexpr EffectMask kHoldingMaps =
-    bit(Effect::anisotropy) | bit(Effect::second_uv) | bit(Effect::clear_coat) | bit(Effect::sheen);
+                                   bit(Effect::anisotropy) | bit(Effect::second_uv) | kLayerEffects;
+constexpr EffectMask kHoldingMaps = bit(Effect::anisotropy) | bit(Effect::second_uv) | kLayerEffects;
 constexpr InstanceTable<2> kMapsTable = {
     kMapEffects | bit(Effect::mip_map),
     {

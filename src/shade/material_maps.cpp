@@ -6,10 +6,13 @@
 #include "effect/effect_probe.h"
 #include "scene/metallic_roughness.h"
 #include "shade/clear_coat.h"
+#include "shade/film.h"
 #include "shade/instances.h"
 #include "shade/normal_map.h"
+#include "shade/rough_glass.h"
 #include "shade/sheen.h"
 #include "shade/texture.h"
+#include "shade/transmission.h"
 
 namespace pocketray {
 namespace {
@@ -18,6 +21,11 @@ const MaterialMaps* maps_of(const Scene& scene, const Surface& s) {
   return scene.material_maps.count ? &scene.material_maps[static_cast<std::uint32_t>(s.material - scene.materials.data)]
                                    : nullptr;
 }
+
+std::uint32_t material_of(const Scene& scene, const Surface& s) {
+  return static_cast<std::uint32_t>(s.material - scene.materials.data);
+}
+const GlassMap* glass_of(const Scene& scene, const Surface& s) { return glass_map_of(scene, material_of(scene, s)); }
 
 float within(float x, float low, float high) { return x > low ? (x < high ? x : high) : low; }
 
@@ -40,11 +48,12 @@ const Vec3& look_up(const FrameData& frame, const TextureUse& use, const Surface
   return last->numbers;
 }
 
+// `use`: the texture, or none.
 template <EffectMask mask>
-void apply_metallic_roughness(const FrameData& frame, const MaterialMaps& maps, Vec2 uv, LookUp* last, Surface* s) {
-  effect_entered<Effect::metallic_roughness>();
+void apply_metallic_roughness(const FrameData& frame, const MaterialMaps& maps, const TextureUse& use, Vec2 uv,
+                              LookUp* last, Surface* s) {
   Vec3 numbers = {255, 255, 255};
-  if (maps.metallic_roughness.texture != kNone) numbers = look_up<mask>(frame, maps.metallic_roughness, *s, uv, last);
+  if (use.texture != kNone) numbers = look_up<mask>(frame, use, *s, uv, last);
   const float metallic = within(maps.metallic * (numbers.z / 255), maps.metallic_low, maps.metallic_high);
   s->metallic = static_cast<std::uint16_t>(metallic * 65535 + 0.5f);
   s->roughness = within(maps.roughness * (numbers.y / 255), maps.roughness_low, maps.roughness_high);
@@ -102,8 +111,18 @@ void mapped_surface(const FrameData& frame, const Ray& ray, const Hit& hit, Surf
       }
     }
     if constexpr (has(mask, Effect::metallic_roughness)) {
-      if (has_lobe_map(*maps) && takes_part<mask>(frame, Effect::metallic_roughness))
-        apply_metallic_roughness<mask>(frame, *maps, uv, &last, s);
+      if (has_lobe_map(*maps) && takes_part<mask>(frame, Effect::metallic_roughness)) {
+        effect_entered<Effect::metallic_roughness>();
+        apply_metallic_roughness<mask>(frame, *maps, maps->metallic_roughness, uv, &last, s);
+      }
+    }
+    if constexpr (has(mask, Effect::transmission_map)) {
+      const GlassMap* glass = has(frame.mask, Effect::transmission_map) ? glass_of(scene, *s) : nullptr;
+      if (glass) {
+        if (!has(frame.mask, Effect::metallic_roughness) || !has_lobe_map(*maps))
+          apply_metallic_roughness<mask>(frame, *maps, TextureUse(), uv, &last, s);
+        find_transmission(frame, *glass, s);
+      }
     }
     if constexpr (has(mask, Effect::occlusion)) {
       if (maps->occlusion.texture != kNone && takes_part<mask>(frame, Effect::occlusion))
@@ -114,6 +133,14 @@ void mapped_surface(const FrameData& frame, const Ray& ray, const Hit& hit, Surf
     s->grain = {0, 0, 0};
     if (scene.grains.count && (!has(mask, Effect::second_uv) || has(frame.mask, Effect::anisotropy)))
       s->grain = surface_grain(frame, scene.grains[s->material - scene.materials.data], *s);
+  }
+  if constexpr (has(mask, Effect::iridescence)) {
+    s->film.strength = 0;
+    if (has(frame.mask, Effect::iridescence) && iridescence_of(scene, material_of(scene, *s))) {
+      Material mapped;
+      const Material& lobes = lobes_at(frame, *s, &mapped);
+      find_film(frame, ray, lobes, s);
+    }
   }
   float passes = 1;  // through the sheen
   const bool has_layers = (mask & kLayerEffects & kEffectsBuilt) != 0 && (frame.mask & kLayerEffects) != 0;
@@ -145,11 +172,20 @@ struct MapsPart {
 
 const Material& lobes_at(const FrameData& frame, const Surface& s, Material* mapped) {
   const MaterialMaps* maps = maps_of(*frame.scene, s);
-  if (!has(frame.mask, Effect::metallic_roughness) || !maps || !has_lobe_map(*maps)) return *s.material;
+  const bool varies = maps && has(frame.mask, Effect::metallic_roughness) && has_lobe_map(*maps);
+  const bool is_glass = has(frame.mask, Effect::transmission_map) && glass_of(*frame.scene, s);
+  const bool has_film = has(frame.mask, Effect::iridescence) && s.film.strength > 0;
+  const bool is_inside = has(frame.mask, Effect::rough_refraction) && leaves_body(s) && is_rough_glass(*s.material);
+  if (!varies && !is_glass && !has_film && !is_inside) return *s.material;
   *mapped = *s.material;
-  MetallicRoughness model = maps->model;
-  if (maps->specular.texture != kNone || maps->specular_color.texture != kNone) apply_specular(frame, *maps, s, &model);
-  set_lobes(model, static_cast<float>(s.metallic) / 65535, s.roughness, 0, mapped);
+  if (varies || is_glass) {
+    MetallicRoughness model = maps->model;
+    if (varies && (maps->specular.texture != kNone || maps->specular_color.texture != kNone))
+      apply_specular(frame, *maps, s, &model);
+    set_lobes(model, static_cast<float>(s.metallic) / 65535, s.roughness, is_glass ? s.transmission : 0, mapped);
+  }
+  if (has_film) put_film_on(s, mapped);
+  if (is_inside) mapped->specular = mapped->specular_tinted = {0, 0, 0}, mapped->grazing = 0;
   return *mapped;
 }
 

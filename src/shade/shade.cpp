@@ -10,29 +10,37 @@
 #include "shade/branches.h"
 #include "shade/contact.h"
 #include "shade/direct.h"
+#include "shade/film.h"
 #include "shade/instances.h"
 #include "shade/material_maps.h"
+#include "shade/rough_glass.h"
 #include "shade/selected_light.h"
+#include "shade/transmission.h"
 
 namespace pocketray {
 namespace {
 
-// Without refraction there are no media.
+// Without refraction there are no media, and the width of beams is the business of the instance of coats.
 struct NoMedia {};
 template <EffectMask mask>
 using Media = std::conditional_t<has(mask, Effect::refraction), MediumStack, NoMedia>;
+struct NoWidth {};
+template <EffectMask mask>
+using Width = std::conditional_t<has(mask, Effect::clear_coat), BeamWidth, NoWidth>;
 
 template <EffectMask mask, bool has_footprints = has(mask, Effect::mip_map)>
 struct Path {
   Vec3 weight;          // throughput of the path so far; bounds the contribution of a ray to the sample
   std::uint32_t depth;  // reflections and refractions so far
   Media<mask> media;
+  Width<mask> width;
 };
 template <EffectMask mask>
 struct Path<mask, true> {
   Vec3 weight;
   std::uint32_t depth;
   Media<mask> media;
+  Width<mask> width;
   float distance = 0;  // along the path from the eye to its last surface
 };
 
@@ -74,6 +82,15 @@ Vec3 radiance_behind(const FrameData& frame, const Vec3& direction) {
   effect_entered<Effect::environment>();
   return environment_radiance(*frame.scene, direction);
 }
+template <EffectMask mask>
+Vec3 radiance_behind(const FrameData& frame, const Vec3& direction, const Path<mask>& path) {
+  if constexpr (has(mask, Effect::clear_coat))
+    if (path.width.alpha > 0 && has_environment<mask>(frame)) {
+      effect_entered<Effect::environment>();
+      return environment_in_beam(*frame.scene, direction, path.width.alpha);
+    }
+  return radiance_behind<mask>(frame, direction);
+}
 
 // Radiance along a spawned ray: zero if it cannot matter, the surroundings' radiance beyond the path's maximum depth.
 template <EffectMask mask>
@@ -82,7 +99,7 @@ Vec3 spawn(Tracer* tracer, RayKind kind, const Surface& s, const Vec3& direction
   const FrameData& frame = *tracer->frame;
   if (path.depth >= frame.settings.ray_depth) {
     const Vec3 seen =
-        has_environment<mask>(frame) ? radiance_behind<mask>(frame, direction) : frame.cut_off.beyond_depth;
+        has_environment<mask>(frame) ? radiance_behind<mask>(frame, direction, path) : frame.cut_off.beyond_depth;
     end_ray(tracer, max_component(path.weight * weight), seen);
     return weight * seen;
   }
@@ -105,11 +122,23 @@ Vec3 mirror(Tracer* tracer, RayKind kind, const Ray& ray, const Surface& s, cons
   return spawn<mask>(tracer, kind, s, normalize(direction), 1, path, weight);
 }
 
+// Transmission by the facets of a rough boundary with the normal n: one ray, which looks up environments and textures
+// as widely as its beam. Four rays at the first surface took 2.7 times as long and were farther from the reference.
+template <EffectMask mask>
+Vec3 scattered(Tracer* tracer, const Ray& ray, const Surface& s, const Material& lobes, const Vec3& n, float eta,
+               Path<mask> beyond, const Vec3& weight) {
+  effect_entered<Effect::rough_refraction>();
+  const FacetPassage<float> passage = through_facets(lobes, ray.direction, n, eta);
+  beyond.width.alpha = widened_beam(lobes, beyond.width.alpha, eta);
+  if (!(passage.share > 0) || !(dot(passage.direction, s.geometric) < 0)) return {0, 0, 0};
+  return spawn<mask>(tracer, RayKind::refraction, s, passage.direction, -1, beyond, weight * passage.share);
+}
+
 // A dielectric boundary: reflects by Fresnel; the rest is transmitted, refracted by Snell. A metallic reflection of the
 // surface shares the reflected ray, so that the tree of rays has two branches, not three.
 template <EffectMask mask>
-Vec3 dielectric(Tracer* tracer, const Ray& ray, const Surface& s, const Contact& contact, const Path<mask>& path,
-                const Vec3& mirrored) {
+Vec3 dielectric(Tracer* tracer, const Ray& ray, const Surface& s, const Material& lobes, const Contact& contact,
+                const Path<mask>& path, const Vec3& mirrored) {
   effect_entered<Effect::refraction>();
   const Scene& scene = *tracer->frame->scene;
   const Material& m = *s.material;
@@ -127,7 +156,18 @@ Vec3 dielectric(Tracer* tracer, const Ray& ray, const Surface& s, const Contact&
   float reflected = fresnel(cos_i, eta, &cos_t);
   if (eta == 1) reflected = 0, cos_t = cos_i;  // touching bodies of equal index: no reflection from rounding
   if (m.thin && reflected < 1) reflected = 2 * reflected / (1 + reflected);  // both faces of the sheet, all orders
-  const Vec3 turned = mirrored + Vec3{reflected, reflected, reflected};
+  Vec3 turned = Vec3{reflected, reflected, reflected}, passing = {1 - reflected, 1 - reflected, 1 - reflected};
+  bool is_rough = false;
+  if constexpr (has(mask, Effect::clear_coat)) {
+    const EffectMask plan = tracer->frame->mask;
+    if (has(plan, Effect::iridescence) && s.film.strength > 0) {
+      turned = film_at_boundary(s.film, m.ior, reflected, eta < 1 ? cos_i : cos_t);
+      passing = Vec3{1, 1, 1} - turned;
+    }
+    is_rough = has(plan, Effect::rough_refraction) && is_rough_glass(m) && lobes.roughness > kAlphaMin;
+    if (is_rough) divide_at_facets(s, lobes, &turned, &passing);
+  }
+  turned += mirrored;
   Vec3 by_mirror = {0, 0, 0}, passed = {0, 0, 0};
   const bool mirror_first = max_component(turned) > 1 - reflected;
   for (bool mirrors : {mirror_first, !mirror_first}) {  // the stronger branch first
@@ -139,12 +179,22 @@ Vec3 dielectric(Tracer* tracer, const Ray& ray, const Surface& s, const Contact&
     Vec3 tint = {1, 1, 1};
     for (std::uint32_t i = 0; i < contact.count; ++i) {
       const Material& entered = scene.materials[contact.face[i].material];
-      if (transmits(entered, plan_of<mask>(*tracer->frame)) && (contact.face[i].front || entered.thin))
+      if (!transmits(entered, plan_of<mask>(*tracer->frame)) || !(contact.face[i].front || entered.thin)) continue;
+      if constexpr (has(mask, Effect::clear_coat))
+        tint *= transmission_of(*tracer->frame, ray, contact.face[i], s);
+      else
         tint *= entered.transmission;
+    }
+    if constexpr (has(mask, Effect::clear_coat)) {
+      if (is_rough) {
+        passed = scattered<mask>(tracer, ray, s, lobes, n, eta, beyond, tint * passing);
+        continue;
+      }
+      if (!m.thin) beyond.width.alpha *= eta;
     }
     Vec3 direction = m.thin ? ray.direction : normalize(refract(ray.direction, n, eta, cos_i, cos_t));
     if (!(dot(direction, s.geometric) < 0)) direction = ray.direction;  // the shading normal deviates too far
-    passed = spawn<mask>(tracer, RayKind::refraction, s, direction, -1, beyond, tint * (1 - reflected));
+    passed = spawn<mask>(tracer, RayKind::refraction, s, direction, -1, beyond, tint * passing);
   }
   return by_mirror + passed;
 }
@@ -163,7 +213,7 @@ Vec3 pass_coat(Tracer* tracer, const Ray& ray, const Surface& s, const Material&
     Path<mask> under = path;
     under.weight = path.weight * coat.passes;
     const Vec3 besides = together ? mirrored + by_coat * (1 / coat.passes) : mirrored;
-    return sum + dielectric<mask>(tracer, ray, s, *contact, under, besides) * coat.passes;
+    return sum + dielectric<mask>(tracer, ray, s, m, *contact, under, besides) * coat.passes;
   }
   const Vec3 turned = together ? mirrored * coat.passes + by_coat : mirrored * coat.passes;
   if (!is_zero(turned)) sum += mirror<mask>(tracer, RayKind::mirror, ray, s, s.normal, path, turned);
@@ -195,7 +245,7 @@ inline Vec3 shade_lobes(Tracer* tracer, const Ray& ray, const Surface& s, const 
   if constexpr (has(mask, Effect::clear_coat))
     if (s.coat.passes < 1) return sum + pass_coat<mask>(tracer, ray, s, m, contact, path, mirrored);
   if constexpr (has(mask, Effect::refraction)) {
-    if (!is_zero(m.transmission)) return sum + dielectric<mask>(tracer, ray, s, *contact, path, mirrored);
+    if (!is_zero(m.transmission)) return sum + dielectric<mask>(tracer, ray, s, m, *contact, path, mirrored);
   }
   if constexpr (has(mask, Effect::mirror)) {
     if (!is_zero(m.mirror)) sum += mirror<mask>(tracer, RayKind::mirror, ray, s, s.normal, path, mirrored);
@@ -296,11 +346,13 @@ Vec3 radiance_from(Tracer* tracer, Ray ray, Hit hit, const Surface* first, Path<
   for (std::uint32_t layer = 0; layer < kTransparentLayerMax; ++layer) {
     if (layer > 0) frame.geometry.accel_info->closest(frame.geometry.accel, ray, filter, &hit, &tracer->stats);
     if (hit.triangle == kNoTriangle) {
-      const Vec3 behind = radiance_behind<mask>(frame, ray.direction);
+      const Vec3 behind = radiance_behind<mask>(frame, ray.direction, path);
       if constexpr (kBranches<mask>) add_certain(tracer, path.weight * behind);
       return sum + carried * behind;
     }
     if constexpr (has(mask, Effect::mip_map)) path.distance += hit.t;
+    if constexpr (has(mask, Effect::mip_map) && has(mask, Effect::clear_coat))
+      path.distance += widened(frame, path.width, hit.t);
     Surface found;
     const Surface* s = first;
     if (layer > 0 || !first) frame.kernels.surface(frame, ray, on_path(hit, path), &found), s = &found;

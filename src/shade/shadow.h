@@ -15,6 +15,7 @@
 #include "shade/texture.h"
 #include "shade/tile_shadows.h"
 #include "shade/tracer.h"
+#include "shade/transmission.h"
 
 namespace pocketray {
 
@@ -26,8 +27,9 @@ constexpr EffectMask plan_of(const FrameData& frame) {
   return (mask & ~held) | (frame.mask & held);
 }
 
-// Effects on which transmitted light depends.
-constexpr EffectMask kPassageEffects = bit(Effect::refraction) | bit(Effect::absorption) | bit(Effect::alpha_blend);
+// Effects on which transmitted light depends; the instance of coats looks up textures of glass.
+constexpr EffectMask kPassageEffects =
+    bit(Effect::refraction) | bit(Effect::absorption) | bit(Effect::alpha_blend) | bit(Effect::clear_coat);
 
 // Returns whether to skip a contribution of at most `bound`: the total skipped of a sample stays below half the
 // narrowest display level, so no pixel changes by more than one level.
@@ -45,8 +47,10 @@ inline bool leave_out(Tracer* tracer, float bound) {
 }
 
 // Transmittance of a contact for an unrefracted ray: Fresnel once, from the body that ends to the one that begins (air
-// if none), times the tints of all bodies entered.
-inline Vec3 interface_transmittance(const FrameData& frame, const Contact& contact, float cos_i) {
+// if none), times the tints of all bodies entered. `s` is the surface that the ray meets.
+template <EffectMask mask>
+inline Vec3 interface_transmittance(const FrameData& frame, const Ray& ray, const Surface& s, const Contact& contact,
+                                    float cos_i) {
   Vec3 tint = {1, 1, 1};
   float from = 1, to = 1;
   bool any = false;
@@ -56,7 +60,12 @@ inline Vec3 interface_transmittance(const FrameData& frame, const Contact& conta
     if (is_zero(m.transmission)) continue;
     effect_entered<Effect::refraction>();
     any = true;
-    if (face.front || m.thin) tint *= m.transmission;
+    if (face.front || m.thin) {
+      if constexpr (has(mask, Effect::clear_coat))
+        tint *= transmission_of(frame, ray, face, s);
+      else
+        tint *= m.transmission;
+    }
     (face.front || m.thin ? to : from) = m.ior;
   }
   if (!any) return tint;
@@ -101,11 +110,13 @@ Vec3 clear_transmittance(Tracer* tracer, Ray ray, const ShadowContext& context, 
       return result;
     }
     Surface s;
-    frame.kernels.surface(frame, ray, hit, &s);
+    Hit place = hit;
+    place.t = 0;  // not along a path from the eye: shadows read the textures' largest level
+    frame.kernels.surface(frame, ray, place, &s);
     Contact contact;
     gather_contact(frame, s, hit, &filter, &contact, &tracer->stats);
     if (has(plan, Effect::refraction)) {
-      result *= interface_transmittance(frame, contact, std::fabs(dot(s.normal, ray.direction)) / unit);
+      result *= interface_transmittance<mask>(frame, ray, s, contact, std::fabs(dot(s.normal, ray.direction)) / unit);
       if (has(plan, Effect::absorption)) {
         float distance = (passed + hit.t) * unit;
         for (std::uint32_t i = 0; i < contact.count; ++i) {

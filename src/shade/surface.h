@@ -30,6 +30,14 @@ struct SurfaceSheen {
   float roughness;  // set with a colour
 };
 
+// Thin film over a surface, see film.h.
+struct SurfaceFilm {
+  float strength;  // 0: none
+  float ior, thickness;
+  float f0;           // largest component of the reflectance at normal incidence without the film
+  Vec3 normal, seen;  // reflectance with it, at normal incidence for Schlick's formula, and towards the viewer
+};
+
 // The normal and the geometric normal are unit vectors on the side from which the ray came.
 struct Surface : LobeFrame {
   Vec3 point;
@@ -47,6 +55,8 @@ struct Surface : LobeFrame {
   Footprints footprint;  // set with Effect::mip_map
   SurfaceCoat coat;      // set with Effect::clear_coat or sheen
   SurfaceSheen sheen;    // likewise
+  float transmission;    // t of metallic_roughness.h; set with Effect::transmission_map by a GlassMap only
+  SurfaceFilm film;      // set with Effect::iridescence
 };
 
 // True if the ray met the back of a one-sided surface. Glass bodies have both sides. Only visible surfaces are culled:

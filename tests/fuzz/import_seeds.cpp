@@ -57,6 +57,19 @@ std::string cloth_gltf() {
       "iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mNoaPj/HwAGggL/bOBDIwAAAABJRU5ErkJggg==\"}]");
 }
 
+// Rough glass under a film, with all their textures.
+std::string glass_gltf() {
+  const std::string texture = "Texture\":{\"index\":0,\"texCoord\":0}";
+  return triangle_gltf(
+      "{\"pbrMetallicRoughness\":{\"roughnessFactor\":0.4,\"metallicFactor\":0},\"extensions\":{"
+      "\"KHR_materials_transmission\":{\"transmissionFactor\":0.9,\"transmission" +
+          texture + "},\"KHR_materials_volume\":{\"thicknessFactor\":0.5,\"attenuationDistance\":2,\"thickness" +
+          texture + "},\"KHR_materials_iridescence\":{\"iridescenceFactor\":0.8,\"iridescenceIor\":1.4,\"iridescence" +
+          texture + ",\"iridescenceThickness" + texture + "}}}",
+      ",\"textures\":[{\"source\":0}],\"images\":[{\"uri\":\"data:image/png;base64,"
+      "iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mNoaPj/HwAGggL/bOBDIwAAAABJRU5ErkJggg==\"}]");
+}
+
 std::string ply(const char* format, const char* count_type, bool binary) {
   std::string file =
       std::string("ply\nformat ") + format + " 1.0\nelement vertex 4\nproperty float x\nproperty float y\n" +
@@ -116,6 +129,7 @@ std::vector<Model> models() {
       {"two_sets.gltf", "gltf", two_sets_gltf()},
       {"coated.gltf", "gltf", coated_gltf()},
       {"cloth.gltf", "gltf", cloth_gltf()},
+      {"glass.gltf", "gltf", glass_gltf()},
       {"animated.glb", "glb", animated_glb()},
       {"square.obj", "obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvn 0 0 1\nf 1/1/1 2//1 3/1 -1\nl 1 2\n"},
       {"forms.obj", "obj",

@@ -34,13 +34,14 @@ SceneArrays arrays_of(const GeneratedScene& s) {
   copy(scene.positions, &a.positions), copy(scene.normals, &a.normals), copy(scene.uvs, &a.uvs);
   copy(scene.second_uvs, &a.second_uvs), copy(scene.colors, &a.colors), copy(scene.triangles, &a.triangles);
   copy(scene.materials, &a.materials), copy(scene.material_maps, &a.material_maps), copy(scene.grains, &a.grains);
-  copy(scene.sheens, &a.sheens), copy(scene.clear_coats, &a.clear_coats), copy(scene.tangents, &a.tangents),
-      copy(scene.textures, &a.textures);
-  copy(scene.texels, &a.texels), copy(scene.lights, &a.lights), copy(scene.cameras, &a.cameras);
-  copy(scene.nodes, &a.nodes), copy(scene.animations, &a.animations), copy(scene.channels, &a.channels);
+  copy(scene.glass_maps, &a.glass_maps), copy(scene.iridescences, &a.iridescences);
+  copy(scene.sheens, &a.sheens), copy(scene.clear_coats, &a.clear_coats), copy(scene.tangents, &a.tangents);
+  copy(scene.textures, &a.textures), copy(scene.texels, &a.texels);
+  copy(scene.lights, &a.lights), copy(scene.cameras, &a.cameras), copy(scene.nodes, &a.nodes);
+  copy(scene.animations, &a.animations), copy(scene.channels, &a.channels);
   copy(scene.key_times, &a.key_times), copy(scene.key_values, &a.key_values);
-  copy(scene.moving_meshes, &a.moving_meshes), copy(scene.rest_positions, &a.rest_positions);
-  copy(scene.rest_normals, &a.rest_normals);
+  copy(scene.moving_meshes, &a.moving_meshes);
+  copy(scene.rest_positions, &a.rest_positions), copy(scene.rest_normals, &a.rest_normals);
   return a;
 }
 
@@ -355,9 +356,7 @@ TEST_CASE("hard_73_textures_of_one_value_are_factors") {
       if (!is_even) texels[9] = {{91, 161, 201, 131}};
       TextureUse use;
       use.texture = add_texture(&s, 4, 4, texels);
-      Material m;
-      m.brdf = kGgx;
-      add_material(&s, m);
+      s.materials.resize(1), s.materials[0].brdf = kGgx;
       s.material_maps.resize(1), s.clear_coats.resize(1), s.grains.resize(1), s.sheens.resize(1);
       MaterialMaps& maps = s.material_maps[0];
       ClearCoat& coat = s.clear_coats[0];

@@ -145,6 +145,12 @@ const Case kCases[] = {
        s->sheens[1].color = {1, 1, 1}, s->sheens[1].roughness = s->sheens[1].roughness_low = 0.4f;
        s->sheens[1].color_texture.texture = texture_of(s, kBlack, {{0, 0, visible, 255}});
      }},
+    {"film under black", Effect::iridescence, "none of 2 materials have a thin film (1 with a black texture)",
+     [](GeneratedScene* s, bool visible) {
+       s->iridescences.resize(2);
+       s->iridescences[1].strength = 1;
+       s->iridescences[1].strength_texture.texture = texture_of(s, kGreenBlue, {{visible, 255, 255, 255}});
+     }},
     {"grain under black", Effect::anisotropy, "none of 2 materials have a grain (1 with a black texture)",
      [](GeneratedScene* s, bool visible) {
        s->materials[1].brdf = kGgx, s->materials[1].specular = {0.5f, 0.5f, 0.5f}, s->materials[1].roughness = 0.2f;
@@ -229,6 +235,9 @@ bool is_on_by_flags(const Asked& asked) {
       return s.with_colors;
     case Effect::clear_coat:
       return std::any_of(s.clear_coats.begin(), s.clear_coats.end(), [](const ClearCoat& c) { return c.strength > 0; });
+    case Effect::iridescence:
+      return std::any_of(s.iridescences.begin(), s.iridescences.end(),
+                         [](const Iridescence& film) { return film.strength > 0; });
     case Effect::sheen:
       return std::any_of(s.sheens.begin(), s.sheens.end(), [](const Sheen& c) { return c.color.x > 0; });
     case Effect::anisotropy:

@@ -73,6 +73,10 @@ TEST_CASE("plan_effects_follow_the_scene") {
       {bit(F::clear_coat), bit(E::clear_coat) | bit(E::specular) | bit(E::mirror) | bit(E::ambient_gloss)},
       {bit(F::sheen), bit(E::sheen)},
       {bit(F::sheen) | bit(F::texture), bit(E::sheen) | bit(E::texture)},
+      {bit(F::transmission_map), bit(E::transmission_map) | bit(E::refraction) | bit(E::mirror) | bit(E::texture)},
+      {bit(F::rough_refraction),
+       bit(E::rough_refraction) | bit(E::refraction) | bit(E::specular) | bit(E::ambient_gloss)},
+      {bit(F::iridescence), bit(E::iridescence) | bit(E::specular) | bit(E::ambient_gloss)},
       {bit(F::occlusion), 0},  // nothing to take away
       {bit(F::occlusion) | bit(F::ambient), bit(E::occlusion) | bit(E::ambient)},
       {bit(F::second_uv), 0},  // no texture
@@ -133,6 +137,33 @@ TEST_CASE("plan_effects_follow_the_textures_of_sheens") {
       CHECK(has(mask, Effect::sheen) == (color > 0));
       CHECK(has(mask, Effect::mip_map) == (color > 0));
       CHECK(has(mask, Effect::second_uv) == (color > 0));
+    }
+}
+
+// Goal: textures of a film and of glass call for what they read, and only while it shows. Method: as for coats.
+TEST_CASE("plan_effects_follow_the_textures_of_films_and_glass") {
+  for (int slot = 0; slot < 4; ++slot)
+    for (float share : {1.0f, 0.0f}) {
+      GeneratedScene s;
+      Material m;
+      m.brdf = kGgx, m.thin = 1, m.specular = {0.04f, 0.04f, 0.04f}, m.transmission = {share, share, share};
+      add_quad(&s, {0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, add_material(&s, m));
+      const std::uint32_t texture = add_texture(&s, 2, 2, std::vector<std::array<int, 4>>(4, {{9, 9, 9, 255}}));
+      add_levels(&s, texture);
+      s.textures[texture].uv_set = 1;
+      s.material_maps.resize(1), s.glass_maps.resize(1), s.iridescences.resize(1);
+      s.material_maps[0].model = {{1, 1, 1}, {0.04f, 0.04f, 0.04f}, 1};
+      (slot < 2 ? s.iridescences[0].strength : s.glass_maps[0].transmission) = share;
+      TextureUse* uses[] = {&s.iridescences[0].strength_texture, &s.iridescences[0].thickness_texture,
+                            &s.glass_maps[0].transmission_texture, &s.glass_maps[0].thickness_texture};
+      uses[slot]->texture = texture;
+      s.with_uvs = s.with_second_uvs = true;
+      s.bind();
+      const EffectMask mask = plan_effects(s.scene, Settings()).mask;
+      CAPTURE(slot);
+      CHECK(has(mask, slot < 2 ? Effect::iridescence : Effect::transmission_map) == (share > 0));
+      CHECK(has(mask, Effect::mip_map) == (share > 0));
+      CHECK(has(mask, Effect::second_uv) == (share > 0));
     }
 }
 

@@ -10,41 +10,13 @@
 #include "base/limits.h"
 #include "scene/baked.h"
 #include "scene/full_scene.h"
+#include "scene/refusals.h"
 #include "scene/texel_blocks.h"
 #include "support/hard_case.h"
 
 using namespace pocketray;
 
 namespace {
-
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN(), kInf = std::numeric_limits<float>::infinity();
-
-// Changes a valid scene and expects a refusal that mentions `what`.
-void refuses(const char* what, const std::function<void(FullScene*)>& change) {
-  FullScene full;
-  make_full_scene(21, 14, 6, &full);
-  Status status = validate_scene(full.scene);
-  REQUIRE_MESSAGE(status.ok, status.message);
-  change(&full);
-  full.bind();
-  status = validate_scene(full.scene);
-  std::string message = status.message;
-  CAPTURE(what);
-  CAPTURE(message);
-  CHECK(!status.ok);
-  CHECK(message.find(what) != std::string::npos);
-  CHECK(message.find('\n') == std::string::npos);
-}
-
-// Expects that the change keeps the scene valid.
-void accepts(const std::function<void(FullScene*)>& change) {
-  FullScene full;
-  make_full_scene(21, 14, 6, &full);
-  change(&full);
-  full.bind();
-  Status status = validate_scene(full.scene);
-  CHECK_MESSAGE(status.ok, status.message);
-}
 
 template <class E>
 E unknown(int value) {
@@ -239,51 +211,6 @@ TEST_CASE("validate_scene_refuses_bad_framings") {
   }
   accepts([](FullScene* f) { f->framings[0].reach[2][0] = -3e18f; });
   accepts([](FullScene* f) { f->framings.clear(); });
-}
-
-// Goal: a clear coat out of range, with an invalid texture, over an unlit material or with normals of the second
-// coordinates is refused.
-TEST_CASE("validate_scene_refuses_bad_clear_coats") {
-  for (float bad : {kNan, kInf, 1.01f, -0.5f}) {
-    refuses("clear_coats[1].strength", [=](FullScene* f) { f->clear_coats[1].strength = bad; });
-    refuses("clear_coats[0].roughness", [=](FullScene* f) { f->clear_coats[0].roughness = bad; });
-    refuses("clear_coats[1].roughness_low", [=](FullScene* f) { f->clear_coats[1].roughness_low = bad; });
-  }
-  for (float bad : {kNan, kInf, 1e5f})
-    refuses("clear_coats[2].normal_scale", [=](FullScene* f) { f->clear_coats[2].normal_scale = bad; });
-  refuses("clear_coats[1].roughness_low", [](FullScene* f) { f->clear_coats[1].roughness = 0.125f; });
-  refuses("clear_coats[0].roughness_low is 0 without a texture", [](FullScene* f) { f->clear_coats[0].roughness = 1; });
-  refuses("clear_coats[1].strength_texture is texture 7 of 2",
-          [](FullScene* f) { f->clear_coats[1].strength_texture.texture = 7; });
-  refuses("clear_coats[2].roughness_texture has a transform",
-          [](FullScene* f) { f->clear_coats[2].roughness_texture.m[0][1] = kNan; });
-  refuses("clear_coats[0].normal is texture 2 of 2", [](FullScene* f) { f->clear_coats[0].normal.texture = 2; });
-  refuses("clear_coats[1].normal reads second_uvs", [](FullScene* f) { f->clear_coats[1].normal.texture = 1; });
-  refuses("clear_coats[0] coats materials[0], which is unlit",
-          [](FullScene* f) { f->materials[0].unlit = 1, f->clear_coats[0].strength = 1; });
-  refuses("one for each", [](FullScene* f) { f->clear_coats.pop_back(); });
-  accepts([](FullScene* f) { f->clear_coats.clear(); });
-  accepts([](FullScene* f) { f->materials[0].unlit = 1; });
-}
-
-// Goal: a sheen out of range, with an invalid texture or over an unlit material is refused.
-TEST_CASE("validate_scene_refuses_bad_sheens") {
-  for (float bad : {kNan, kInf, 1.01f, -0.5f}) {
-    refuses("sheens[1].color.x", [=](FullScene* f) { f->sheens[1].color.x = bad; });
-    refuses("sheens[0].color.z", [=](FullScene* f) { f->sheens[0].color.z = bad; });
-    refuses("sheens[0].roughness", [=](FullScene* f) { f->sheens[0].roughness = bad; });
-    refuses("sheens[1].roughness_low", [=](FullScene* f) { f->sheens[1].roughness_low = bad; });
-  }
-  refuses("sheens[1].roughness_low", [](FullScene* f) { f->sheens[1].roughness = 0.125f; });
-  refuses("sheens[0].roughness_low is 0 without a texture", [](FullScene* f) { f->sheens[0].roughness = 1; });
-  refuses("sheens[1].color_texture is texture 7 of 2", [](FullScene* f) { f->sheens[1].color_texture.texture = 7; });
-  refuses("sheens[2].roughness_texture has a transform",
-          [](FullScene* f) { f->sheens[2].roughness_texture.m[0][1] = kNan; });
-  refuses("sheens[0] covers materials[0], which is unlit", [](FullScene* f) {
-    f->materials[0].unlit = 1, f->sheens[0].color = {1, 0, 0};
-  });
-  refuses("one for each", [](FullScene* f) { f->sheens.pop_back(); });
-  accepts([](FullScene* f) { f->sheens.clear(); });
 }
 
 // Goal: a texture of the second coordinates finds them, finite, one at each vertex; a normal map has the first ones,

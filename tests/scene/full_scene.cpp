@@ -102,6 +102,7 @@ void FullScene::bind() {
   scene.reductions = view(reductions);
   scene.environment_info = view(environment_info), scene.environment_texels = view(environment_texels);
   scene.grains = view(grains), scene.tangents = view(tangents), scene.second_uvs = view(second_uvs);
+  scene.glass_maps = view(glass_maps), scene.iridescences = view(iridescences);
   scene.sheens = view(sheens), scene.clear_coats = view(clear_coats), scene.default_view = view(default_view);
   scene.framings = view(framings);
   scene.animation_labels = view(animation_labels), scene.node_visible = view(node_visible);
@@ -148,6 +149,12 @@ void make_full_scene(std::uint64_t seed, std::uint32_t vertex_count, std::uint32
   ClearCoat& coat = full->clear_coats[1];
   coat.strength = 0.75f, coat.roughness = 0.5f, coat.roughness_low = 0.25f, coat.normal_scale = -2;
   coat.strength_texture.texture = coat.roughness_texture.texture = 1, coat.normal.texture = 0;
+  full->glass_maps.resize(full->materials.size()), full->iridescences.resize(full->materials.size());
+  GlassMap& glass = full->glass_maps[0];
+  glass.thickness = 0.75f, glass.transmission_texture.texture = 0, glass.thickness_texture.texture = 1;
+  Iridescence& film = full->iridescences[1];
+  film.strength = 0.5f, film.ior = 1.25f, film.thickness_low = 50, film.thickness_high = 600;
+  film.strength_texture.texture = 1, film.thickness_texture.texture = 0;
   full->sheens.resize(full->materials.size());
   Sheen& sheen = full->sheens[1];
   sheen.color = {0.75f, 0.5f, 0.25f}, sheen.roughness = 0.5f, sheen.roughness_low = 0.25f;

@@ -40,6 +40,8 @@ struct FullScene {
   std::vector<pocketray::Grain> grains;
   std::vector<pocketray::ClearCoat> clear_coats;
   std::vector<pocketray::Sheen> sheens;
+  std::vector<pocketray::GlassMap> glass_maps;
+  std::vector<pocketray::Iridescence> iridescences;
   std::vector<pocketray::DefaultView> default_view;
   std::vector<pocketray::Framing> framings;
   std::vector<pocketray::AnimationLabel> animation_labels;

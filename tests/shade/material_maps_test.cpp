@@ -150,7 +150,7 @@ TEST_CASE("lobe_bounds_cover_every_value_of_the_map") {
     maps.metallic_roughness.texture = 0;
     maps.metallic_high = next(), maps.metallic_low = maps.metallic_high * next();
     maps.roughness_high = next() * next(), maps.roughness_low = maps.roughness_high * next();
-    const Material most = lobe_bounds(Material(), maps);
+    const Material most = lobe_bounds(Material(), maps, nullptr);
     for (int k = 0; k < 10; ++k) {
       Material m;
       set_lobes(maps.model, maps.metallic_low + (maps.metallic_high - maps.metallic_low) * next(),

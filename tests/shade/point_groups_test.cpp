@@ -109,6 +109,8 @@ TEST_CASE("point_groups_are_the_same_in_tiles_and_ray_by_ray") {
     if (!s->grains.empty()) s->grains.resize(s->materials.size());
     if (!s->clear_coats.empty()) s->clear_coats.resize(s->materials.size());
     if (!s->sheens.empty()) s->sheens.resize(s->materials.size());
+    if (!s->glass_maps.empty()) s->glass_maps.resize(s->materials.size());
+    if (!s->iridescences.empty()) s->iridescences.resize(s->materials.size());
     s->bind();
     Settings settings = settings_of(kPoints[seed % 6]);
     settings.cut_off_levels = seed % 3 == 0 ? 0.5f : 0;

@@ -295,6 +295,8 @@ TEST_CASE("polygon_light_is_the_same_in_tiles_and_ray_by_ray") {
     if (!s->grains.empty()) s->grains.resize(s->materials.size());
     if (!s->clear_coats.empty()) s->clear_coats.resize(s->materials.size());
     if (!s->sheens.empty()) s->sheens.resize(s->materials.size());
+    if (!s->glass_maps.empty()) s->glass_maps.resize(s->materials.size());
+    if (!s->iridescences.empty()) s->iridescences.resize(s->materials.size());
     s->bind();
     for (std::uint32_t points : {1u, 4u, 9u}) {
       CAPTURE(points);

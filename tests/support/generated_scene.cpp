@@ -1,6 +1,9 @@
 #include "support/generated_scene.h"
 
+#include <cmath>
+
 #include "brdf/brdf_list.h"
+#include "scene/metallic_roughness.h"
 
 namespace pocketray {
 namespace {
@@ -112,6 +115,58 @@ void add_sheens(GeneratedScene* s, std::uint32_t features, std::uint64_t seed) {
   last.roughness_texture.texture = add_noise_texture(s, &rng, true), last.roughness_low = 0.1f;
 }
 
+// The pane transmits by textures, and so does the outer sphere if it is of glass; its core is rough.
+void add_glass_maps(GeneratedScene* s, std::uint32_t features, std::uint64_t seed) {
+  constexpr std::uint32_t kOuter = 4, kCore = 5, kPane = 6;
+  Material &outer = s->materials[kOuter], &core = s->materials[kCore], &pane = s->materials[kPane];
+  auto roughen = [](Material* m, float alpha) {
+    m->brdf = kGgx, m->roughness = alpha, m->grazing = 1, m->specular = {0.04f, 0.04f, 0.04f};
+  };
+  if (has(features, Feature::rough_refraction)) {
+    if (is_zero(core.transmission)) core.diffuse = {0, 0, 0}, core.transmission = {1, 0.8f, 0.8f};
+    roughen(&core, 0.16f);
+    pane.diffuse = {0, 0, 0}, pane.transmission = {0.7f, 0.9f, 0.8f}, pane.thin = 1;
+    roughen(&pane, 0.04f);
+  }
+  if (!has(features, Feature::transmission_map)) return;
+  Rng rng = make_rng(seed + 2);  // its own: other scenes keep their numbers
+  s->glass_maps.resize(s->materials.size()), s->material_maps.resize(s->materials.size());
+  for (const std::uint32_t index : {kOuter, kPane}) {
+    if (index == kOuter && is_zero(outer.transmission)) continue;
+    Material& m = s->materials[index];
+    MaterialMaps& maps = s->material_maps[index];
+    GlassMap& glass = s->glass_maps[index];
+    maps.model = {{0.8f, 0.9f, 1}, {0.04f, 0.04f, 0.04f}, 1};
+    maps.metallic_high = maps.metallic = index == kPane ? 0.25f : 0, maps.metallic_low = maps.metallic;
+    const bool is_rough = has(features, Feature::rough_refraction);
+    maps.roughness = maps.roughness_low = maps.roughness_high = is_rough ? 0.2f : 0;
+    glass.transmission = 0.8f, glass.transmission_texture.texture = add_noise_texture(s, &rng, false);
+    set_lobes(maps.model, maps.metallic, maps.roughness, 0.4f, &m);
+    m.brdf = kGgx;
+    if (index == kOuter) continue;
+    m.thin = 1, m.absorption = {0.2f, 0.9f, 1.5f}, m.diffuse_texture.texture = add_noise_texture(s, &rng, false);
+    glass.thickness = 1.5f, glass.thickness_texture.texture = add_noise_texture(s, &rng, false);
+  }
+}
+
+// Films on surfaces of all kinds; one has whatever textures there are.
+void add_films(GeneratedScene* s, std::uint32_t features, std::uint64_t seed) {
+  if (!has(features, Feature::iridescence)) return;
+  s->iridescences.resize(s->materials.size());
+  Material& shiny = s->materials[2];
+  if (is_zero(shiny.specular) || shiny.brdf != kGgx)
+    shiny.brdf = kGgx, shiny.specular = {0.5f, 0.4f, 0.3f}, shiny.roughness = 0.3f, shiny.grazing = 0.9f;
+  for (const std::uint32_t material : {2u, 3u, 4u, 6u}) {
+    Iridescence& film = s->iridescences[material];
+    film.strength = 0.9f, film.ior = 1.2f + 0.1f * static_cast<float>(material);
+    film.thickness_high = 200 + 60 * static_cast<float>(material);
+  }
+  if (!has(features, Feature::texture)) return;
+  Rng rng = make_rng(seed + 3);
+  s->iridescences[2].strength_texture.texture = add_noise_texture(s, &rng, false);
+  s->iridescences[2].thickness_texture.texture = add_noise_texture(s, &rng, false);
+}
+
 void add_bodies(GeneratedScene* s, std::uint32_t features, Rng* rng) {
   Material shiny = matte(random_color(rng)), reflecting = matte(random_color(rng) * 0.5f),
            glass = matte(random_color(rng)), core = glass;
@@ -203,6 +258,7 @@ void add_mip_maps(GeneratedScene* s) {
     repeat(&maps.metallic_roughness), repeat(&maps.occlusion), repeat(&maps.specular);
   for (ClearCoat& coat : s->clear_coats) repeat(&coat.strength_texture), repeat(&coat.roughness_texture);
   for (Sheen& sheen : s->sheens) repeat(&sheen.color_texture), repeat(&sheen.roughness_texture);
+  for (GlassMap& glass : s->glass_maps) repeat(&glass.transmission_texture), repeat(&glass.thickness_texture);
 }
 
 // Two textures of three read the second coordinates, but those of normals cannot.
@@ -228,6 +284,8 @@ std::unique_ptr<GeneratedScene> generate_scene(std::uint32_t features, std::uint
   add_brushed_box(s.get(), features, &rng);
   add_coats(s.get(), features, &rng);
   add_sheens(s.get(), features, seed);
+  add_glass_maps(s.get(), features, seed);
+  add_films(s.get(), features, seed);
   if (!s->material_maps.empty()) s->material_maps.resize(s->materials.size());
   if (!s->grains.empty()) s->grains.resize(s->materials.size());
   if (has(features, Feature::mip_map)) add_mip_maps(s.get());
@@ -249,7 +307,9 @@ Settings settings_for(std::uint32_t features, std::uint32_t width, std::uint32_t
   settings.width = width;
   settings.height = height;
   settings.samples_per_pixel = has(features, Feature::supersampling) ? 2 : 1;
-  const std::uint32_t lit = features & ~bit(Feature::second_uv) & ~bit(Feature::clear_coat) & ~bit(Feature::sheen);
+  const std::uint32_t lit = features & ~bit(Feature::second_uv) & ~bit(Feature::clear_coat) & ~bit(Feature::sheen) &
+                            ~bit(Feature::transmission_map) & ~bit(Feature::rough_refraction) &
+                            ~bit(Feature::iridescence);
   settings.points_per_area_light = lit % 3 == 0 ? 9 : 2;  // in groups, or tested one by one
   return settings;
 }

@@ -39,8 +39,11 @@ enum class Feature : int {
   second_uv,  // of whatever textures there are
   clear_coat,
   sheen,
+  transmission_map,
+  rough_refraction,
+  iridescence,
 };
-constexpr int kFeatureCount = 26;
+constexpr int kFeatureCount = 29;
 constexpr std::uint32_t bit(Feature feature) { return 1u << static_cast<int>(feature); }
 constexpr std::uint32_t kAllFeatures = (1u << kFeatureCount) - 1;
 constexpr bool has(std::uint32_t features, Feature feature) { return (features & bit(feature)) != 0; }
@@ -57,6 +60,8 @@ struct GeneratedScene {
   std::vector<Grain> grains;
   std::vector<ClearCoat> clear_coats;
   std::vector<Sheen> sheens;
+  std::vector<GlassMap> glass_maps;
+  std::vector<Iridescence> iridescences;
   std::vector<PackedTangent> tangents;  // of the first vertices; the rest have none
   std::vector<Texture> textures;
   std::vector<std::uint32_t> texels;

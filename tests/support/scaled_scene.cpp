@@ -35,7 +35,8 @@ void scale_translations(const Scene& source, float k, std::vector<float>* key_va
 void ScaledScene::bind() {
   scene.positions = view(positions), scene.rest_positions = view(rest_positions);
   scene.morph_positions = view(morph_positions), scene.triangles = view(triangles);
-  scene.materials = view(materials), scene.lights = view(lights), scene.cameras = view(cameras);
+  scene.materials = view(materials), scene.glass_maps = view(glass_maps);
+  scene.lights = view(lights), scene.cameras = view(cameras);
   scene.nodes = view(nodes), scene.key_values = view(key_values), scene.joints = view(joints);
   scene.moving_meshes = view(moving_meshes);
   scene.accel = {};
@@ -49,6 +50,8 @@ std::unique_ptr<ScaledScene> scale_scene(const Scene& source, float k) {
   scale(&s->positions, k), scale(&s->rest_positions, k), scale(&s->morph_positions, k);
   s->materials = copy(source.materials);
   for (Material& m : s->materials) m.absorption = m.absorption * (1 / k);
+  s->glass_maps = copy(source.glass_maps);
+  for (GlassMap& glass : s->glass_maps) glass.thickness *= k;
   s->lights = copy(source.lights);
   for (Light& light : s->lights) {
     light.position = light.position * k;

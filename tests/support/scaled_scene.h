@@ -12,6 +12,7 @@ struct ScaledScene {
   std::vector<Vec3> positions, rest_positions, morph_positions;
   std::vector<Triangle> triangles;
   std::vector<Material> materials;
+  std::vector<GlassMap> glass_maps;
   std::vector<Light> lights;
   std::vector<Camera> cameras;
   std::vector<Node> nodes;

@@ -28,6 +28,7 @@ void GeneratedScene::bind() {
   scene.colors = view(colors, with_colors), scene.triangles = view(triangles), scene.materials = view(materials),
   scene.material_maps = view(material_maps), scene.grains = view(grains);
   scene.clear_coats = view(clear_coats), scene.sheens = view(sheens);
+  scene.glass_maps = view(glass_maps), scene.iridescences = view(iridescences);
   if (!tangents.empty()) tangents.resize(positions.size());
   scene.tangents = view(tangents);
   scene.textures = view(textures), scene.texels = view(texels), scene.lights = view(lights);

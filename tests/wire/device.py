@@ -13,7 +13,8 @@ EFFECTS = ["shadow", "specular", "mirror", "refraction", "absorption", "alpha-ma
            "supersampling", "animation", "back-face-culling", "radiosity", "instant-radiosity",
            "ambient-gloss", "metallic-roughness", "normal-map", "occlusion", "mip-map", "selective", "environment",
            "undersampling", "source-selection", "environment-shadow",
-           "anisotropy", "second-uv", "clear-coat", "sheen", "edge-sampling"]
+           "anisotropy", "second-uv", "clear-coat", "sheen", "edge-sampling",
+           "transmission-map", "rough-refraction", "iridescence"]
 
 # ---- Scenes: the hash
 

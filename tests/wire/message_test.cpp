@@ -250,8 +250,8 @@ TEST_CASE("message_values_out_of_range_are_refused") {
       {MessageType::frame_request, 8 + more + 113, {kToneCount}},          // tone
       {MessageType::frame_request, 8 + more + 118, {2}},                   // dither
       {MessageType::frame_request, 8 + more + 119, {2}},                   // format
-      {MessageType::frame_request, 8 + more + 124, {5, 0, 5, 0}},          // no rows
-      {MessageType::frame_request, 8 + more + 126, {0xFF, 0xFF}},          // rows beyond the picture
+      {MessageType::frame_request, 8 + more + 124, {0, 5, 0, 5, 0}},       // no rows
+      {MessageType::frame_request, 8 + more + 127, {0xFF, 0xFF}},          // rows beyond the picture
       {MessageType::frame_request, 8 + more + 120, {0, 0}},                // chunk rows
       {MessageType::frame_request, 8 + more + 122, {3}},                   // coding
       {MessageType::frame_request, 8 + more + 123, {2}},                   // coarse first

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include "base/check.h"
 
@@ -223,6 +224,7 @@ std::uint32_t copy_material(SceneBuilder* builder, std::uint32_t material) {
     entries->push_back(entry);
   };
   copy_entry(&out.material_maps), copy_entry(&out.grains), copy_entry(&out.clear_coats), copy_entry(&out.sheens);
+  copy_entry(&out.glass_maps), copy_entry(&out.iridescences);
   return copy;
 }
 
@@ -250,14 +252,22 @@ struct GlassCount {
   std::uint32_t solid = 0, thin = 0;  // meshes; one of both kinds counts as both
 };
 
-void divide(SceneBuilder* builder, const std::vector<Object>& objects, std::uint32_t material, GlassCount* count) {
+// Makes a material that of a body, whose thickness is that of its mesh.
+void make_body(SceneArrays* out, std::uint32_t material) {
+  out->materials[material].thin = 0;
+  if (material < out->glass_maps.size())
+    out->glass_maps[material].thickness = 0, out->glass_maps[material].thickness_texture = TextureUse();
+}
+
+// `objects` that keep closed meshes from being bodies; null: the file says that they are.
+void divide(SceneBuilder* builder, const std::vector<Object>* objects, std::uint32_t material, GlassCount* count) {
   SceneArrays& out = *builder->out;
   Indices solid;
   std::size_t all = 0;
   GlassCount own;
   for (GlassMesh& mesh : find_glass(*builder, material)) {
     find_closed(out, &mesh);
-    if (holds_something(out, objects, mesh)) mesh.closed.assign(mesh.closed.size(), false);
+    if (objects && holds_something(out, *objects, mesh)) mesh.closed.assign(mesh.closed.size(), false);
     const auto closed_count = static_cast<std::size_t>(std::count(mesh.closed.begin(), mesh.closed.end(), true));
     own.solid += closed_count > 0, own.thin += closed_count < mesh.closed.size();
     for (std::size_t i = 0; i < mesh.closed.size(); ++i)
@@ -268,11 +278,11 @@ void divide(SceneBuilder* builder, const std::vector<Object>& objects, std::uint
   count->solid += own.solid, count->thin += own.thin;
   if (own.solid == 0) return;
   if (solid.size() == all) {
-    out.materials[material].thin = 0;
+    make_body(&out, material);
     return;
   }
   const std::uint32_t body = copy_material(builder, material);
-  out.materials[body].thin = 0;
+  make_body(&out, body);
   for (std::uint32_t t : solid) out.triangles[t].set_material(body);
 }
 
@@ -280,15 +290,17 @@ void divide(SceneBuilder* builder, const std::vector<Object>& objects, std::uint
 
 void decide_glass(SceneBuilder* builder) {
   CHECK(builder != nullptr);
+  GlassCount count;
+  for (std::uint32_t material : std::exchange(builder->volumes, {})) divide(builder, nullptr, material, &count);
+  count = {};
   if (builder->options.glass == GlassKind::thin) return;
   if (builder->options.glass == GlassKind::solid) {
     for (std::uint32_t material : builder->glass) builder->out->materials[material].thin = 0;
     return;
   }
-  GlassCount count;
   const Indices undecided = builder->glass;
   const std::vector<Object> objects = undecided.empty() ? std::vector<Object>() : opaque_objects(*builder);
-  for (std::uint32_t material : undecided) divide(builder, objects, material, &count);
+  for (std::uint32_t material : undecided) divide(builder, &objects, material, &count);
   if (count.solid + count.thin == 0) return;
   std::string text = "glass without a volume: ";
   if (count.solid > 0) text += std::to_string(count.solid) + " closed, taken as solid";

@@ -5,6 +5,8 @@
 
 namespace pocketray {
 
+// Bodies of builder->volumes, which have a texture of their thickness: closed meshes are bodies of their own thickness,
+// others thin sheets of the texture's.
 // Decides for each material in builder->glass, by options.glass. `automatic`: closed meshes are bodies. A mesh is
 // closed if every edge, by the positions of its ends but for rounding, is passed as often in one direction as in the
 // other; a flat one is none, nor is one that has a light or an opaque object inside. Materials of both kinds are

@@ -134,9 +134,9 @@ Vec3 gltf_color_mean(GltfFile* file, int texture);
 bool gltf_has_specular_glossiness(const tinygltf::Material& source);
 tinygltf::Material gltf_without_specular_glossiness(GltfFile* file, const tinygltf::Material& source);
 
-// gltf_maps.cpp: maps of a material; if it is clear, only those that do not change lobes.
-void gltf_read_maps(GltfFile* file, const tinygltf::Material& source, bool is_clear, MaterialMaps* maps);
-// Mean of a channel of a metallic-roughness texture, 1 without one; above zero if any texel is, so that the mean lobe
+// gltf_maps.cpp: maps of a material.
+void gltf_read_maps(GltfFile* file, const tinygltf::Material& source, MaterialMaps* maps);
+// Mean of a channel of a texture of numbers, 1 without one; above zero if any texel is, so that the mean lobe
 // has every part that some texel's lobe has.
 float gltf_map_mean(GltfFile* file, int texture, int channel);
 // The model scaled by the means of specular textures.
@@ -158,6 +158,24 @@ struct GltfSheenTextures {
 };
 GltfSheenTextures gltf_sheen_textures(const tinygltf::Material& source);
 Sheen gltf_read_sheen(GltfFile* file, const tinygltf::Material& source);
+
+// gltf_glass.cpp: transmission, volume and thin film of a material, and their textures.
+struct GltfGlassTextures {
+  tinygltf::TextureInfo transmission, thickness;
+};
+GltfGlassTextures gltf_glass_textures(const tinygltf::Material& source);
+// Transmission: its factor, and the mean of its texture.
+struct GltfTransmission {
+  float factor = 0, mean = 0;
+};
+GltfTransmission gltf_read_transmission(GltfFile* file, const tinygltf::Material& source);
+// Sets thin and absorption; the thickness and its texture, of a material that transmits, if it has one.
+void gltf_read_volume(GltfFile* file, const tinygltf::Material& source, Material* material, GlassMap* glass);
+struct GltfFilmTextures {
+  tinygltf::TextureInfo strength, thickness;
+};
+GltfFilmTextures gltf_film_textures(const tinygltf::Material& source);
+Iridescence gltf_read_film(GltfFile* file, const tinygltf::Material& source);
 
 // gltf_mesh.cpp: the primitives of a mesh that make triangles.
 std::vector<MeshData> gltf_mesh(GltfFile* file, int mesh);

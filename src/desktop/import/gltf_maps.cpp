@@ -86,19 +86,13 @@ float gltf_map_mean(GltfFile* file, int texture, int channel) {
   return channel_range(image, channel).high > 0 ? std::max(mean, kLeastMean) : mean;
 }
 
-void gltf_read_maps(GltfFile* file, const tinygltf::Material& source, bool is_clear, MaterialMaps* maps) {
+void gltf_read_maps(GltfFile* file, const tinygltf::Material& source, MaterialMaps* maps) {
   if (gltf_extension(source.extensions, "KHR_materials_unlit")) return;  // its texels would only take memory
   const tinygltf::PbrMetallicRoughness& pbr = source.pbrMetallicRoughness;
   const SpecularTextures specular = specular_textures(source);
-  const bool is_rough = pbr.metallicRoughnessTexture.index >= 0;
-  if (!is_clear) {
-    read_metallic_roughness(file, pbr, maps);
-    maps->specular = gltf_texture_use(file, specular.share);
-    maps->specular_color = gltf_texture_use(file, specular.color);
-  } else if (is_rough || specular.share.index >= 0 || specular.color.index >= 0) {
-    note_remark(file->builder,
-                "only the mean of metallic-roughness and specular textures of transparent materials is used");
-  }
+  read_metallic_roughness(file, pbr, maps);
+  maps->specular = gltf_texture_use(file, specular.share);
+  maps->specular_color = gltf_texture_use(file, specular.color);
   maps->normal = gltf_texture_use(file, plain(source.normalTexture), TexelKind::numbers);
   const double scale = source.normalTexture.scale, most = static_cast<double>(kNormalScaleMax);
   maps->normal_scale = std::isfinite(scale) ? static_cast<float>(std::min(std::max(scale, -most), most)) : 1.0f;
@@ -111,6 +105,8 @@ GltfUvSets gltf_choose_uv_sets(GltfFile* file, const tinygltf::Material& source)
   const SpecularTextures specular = specular_textures(source);
   const GltfCoatTextures coat = gltf_coat_textures(source);
   const GltfSheenTextures sheen = gltf_sheen_textures(source);
+  const GltfGlassTextures glass = gltf_glass_textures(source);
+  const GltfFilmTextures film = gltf_film_textures(source);
   const bool leads = source.normalTexture.index < 0;  // the tangent frame serves only the coat's normals
   const tinygltf::Value* anisotropy = gltf_extension(source.extensions, "KHR_materials_anisotropy");
   const bool has_grain = anisotropy && gltf_number(*anisotropy, "anisotropyStrength", 0) > 0;
@@ -133,7 +129,11 @@ GltfUvSets gltf_choose_uv_sets(GltfFile* file, const tinygltf::Material& source)
              {"clear coat", coat.strength, is_lit},
              {"clear coat roughness", coat.roughness, is_lit},
              {"sheen colour", sheen.color, is_lit},
-             {"sheen roughness", sheen.roughness, is_lit}};
+             {"sheen roughness", sheen.roughness, is_lit},
+             {"transmission", glass.transmission, is_lit},
+             {"thickness", glass.thickness, is_lit},
+             {"iridescence", film.strength, is_lit},
+             {"iridescence thickness", film.thickness, is_lit}};
   const char* first = nullptr;
   GltfUvSets sets;
   for (const auto& texture : all) {

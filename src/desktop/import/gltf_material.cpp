@@ -6,8 +6,7 @@
 //   factor
 //                (KHR_materials_specular)
 //   absorption = −ln(attenuation colour)/attenuation distance (KHR_materials_volume)
-// A metallicRoughness texture becomes a map, and the material has the lobes of its mean; a transparent material uses
-// only the mean. A transmission texture multiplies its factor by its mean.
+// Textures of metallic, roughness and transmission become maps, and the material has the lobes of their means.
 #include <algorithm>
 #include <cmath>
 
@@ -24,25 +23,6 @@ namespace {
 Vec3 color3(const std::vector<double>& values, const Vec3& fallback) {
   if (values.size() < 3) return fallback;
   return {gltf_unit(values[0]), gltf_unit(values[1]), gltf_unit(values[2])};
-}
-
-// Mean of a data texture's channel; 1 without the texture.
-float texture_mean(GltfFile* file, int texture, int channel, const char* name) {
-  if (texture < 0) return 1;
-  note_remark(file->builder, std::string("only the mean of ") + name + " textures is used");
-  return channel_mean(gltf_image(file, texture, TexelKind::numbers), channel);
-}
-
-void read_volume(const tinygltf::ExtensionMap& extensions, Material* material) {
-  const tinygltf::Value* volume = gltf_extension(extensions, "KHR_materials_volume");
-  material->thin = !volume || !(gltf_number(*volume, "thicknessFactor", 0) > 0);
-  double distance = volume ? gltf_number(*volume, "attenuationDistance", 0) : 0;  // absent: infinite
-  if (material->thin || !(distance > 0)) return;
-  Vec3 color = gltf_color(*volume, "attenuationColor", {1, 1, 1});
-  for (int c = 0; c < 3; ++c) {
-    double kept = std::min(std::max(static_cast<double>(color[c]), 1e-6), 1.0);
-    material->absorption[c] = static_cast<float>(std::min(-det_log(kept) / distance, 1e18));
-  }
 }
 
 // KHR_materials_specular: a dielectric's reflectance at normal incidence and at grazing incidence.
@@ -67,27 +47,35 @@ DielectricSpecular read_specular(const tinygltf::ExtensionMap& extensions, float
   return d;
 }
 
-void read_surface(GltfFile* file, const tinygltf::Material& source, Material* material, MaterialMaps* maps) {
+// Mean of the metallic values; below 1 if any texel is, so that what these transmit is part of the mean lobes.
+float mean_metallic(GltfFile* file, const tinygltf::PbrMetallicRoughness& pbr) {
+  const int texture = pbr.metallicRoughnessTexture.index;
+  const float mean = gltf_unit(pbr.metallicFactor) * gltf_map_mean(file, texture, 2);
+  if (texture < 0 || channel_range(gltf_image(file, texture, TexelKind::numbers), 2).low == 255) return mean;
+  return std::min(mean, 1 - 0x1p-10f);
+}
+
+void read_surface(GltfFile* file, const tinygltf::Material& source, Material* material, MaterialMaps* maps,
+                  GlassMap* glass) {
   const tinygltf::PbrMetallicRoughness& pbr = source.pbrMetallicRoughness;
   const int texture = pbr.metallicRoughnessTexture.index;
   if (const tinygltf::Value* ior = gltf_extension(source.extensions, "KHR_materials_ior"))
     material->ior =
         static_cast<float>(std::min(std::max(gltf_number(*ior, "ior", 1.5), 1.0), static_cast<double>(kIorMax)));
-  float transmission = 0;
-  if (const tinygltf::Value* extension = gltf_extension(source.extensions, "KHR_materials_transmission")) {
-    transmission = gltf_unit(gltf_number(*extension, "transmissionFactor", 0));
-    if (transmission > 0)
-      transmission *= texture_mean(file, gltf_texture_info(*extension, "transmissionTexture").index, 0, "transmission");
-  }
+  const GltfTransmission transmission = gltf_read_transmission(file, source);
   const DielectricSpecular dielectric = read_specular(source.extensions, material->ior);
   maps->model = {color3(pbr.baseColorFactor, {1, 1, 1}), dielectric.normal, dielectric.grazing};
   material->brdf = kGgx;
-  set_lobes(gltf_mean_model(file, source, maps->model), gltf_unit(pbr.metallicFactor) * gltf_map_mean(file, texture, 2),
-            gltf_unit(pbr.roughnessFactor) * gltf_map_mean(file, texture, 1), transmission, material);
-  const bool is_clear = !is_zero(material->transmission);
-  if (is_clear) read_volume(source.extensions, material);
-  if (is_clear && material->roughness > 0) note_remark(file->builder, "rough transmission is rendered clear");
-  gltf_read_maps(file, source, is_clear, maps);
+  const float metallic = transmission.mean > 0 ? mean_metallic(file, pbr)
+                                               : gltf_unit(pbr.metallicFactor) * gltf_map_mean(file, texture, 2);
+  set_lobes(gltf_mean_model(file, source, maps->model), metallic,
+            gltf_unit(pbr.roughnessFactor) * gltf_map_mean(file, texture, 1), transmission.mean, material);
+  if (!is_zero(material->transmission)) {
+    glass->transmission = transmission.factor;
+    glass->transmission_texture = gltf_texture_use(file, gltf_glass_textures(source).transmission, TexelKind::numbers);
+    gltf_read_volume(file, source, material, glass);
+  }
+  gltf_read_maps(file, source, maps);
 }
 
 void read_emission(GltfFile* file, const tinygltf::Material& source, Material* material) {
@@ -98,9 +86,9 @@ void read_emission(GltfFile* file, const tinygltf::Material& source, Material* m
   if (!is_zero(material->emission)) material->emission_texture = gltf_texture_use(file, source.emissiveTexture);
 }
 
-Material convert(GltfFile* file, const tinygltf::Material& source, MaterialMaps* maps) {
+Material convert(GltfFile* file, const tinygltf::Material& source, MaterialMaps* maps, GlassMap* glass) {
   Material material;
-  read_surface(file, source, &material, maps);
+  read_surface(file, source, &material, maps, glass);
   read_emission(file, source, &material);
   const tinygltf::PbrMetallicRoughness& pbr = source.pbrMetallicRoughness;
   material.diffuse_texture = gltf_texture_use(file, pbr.baseColorTexture);
@@ -119,13 +107,11 @@ Material convert(GltfFile* file, const tinygltf::Material& source, MaterialMaps*
     AlphaMode mode = material.alpha_mode;
     float opacity = material.opacity, cutoff = material.alpha_cutoff;
     std::uint8_t double_sided = material.double_sided;
-    material = Material(), *maps = MaterialMaps();
+    material = Material(), *maps = MaterialMaps(), *glass = GlassMap();
     material.diffuse = color, material.diffuse_texture = texture, material.alpha_mode = mode;
     material.opacity = opacity, material.alpha_cutoff = cutoff, material.double_sided = double_sided,
     material.unlit = 1;
   }
-  if (const tinygltf::Value* volume = gltf_extension(source.extensions, "KHR_materials_volume"))
-    if (volume->Has("thicknessTexture")) note_unused(file->builder, "thickness maps");
   return material;
 }
 
@@ -152,17 +138,21 @@ static std::uint32_t read_material(GltfFile* file, int index, const tinygltf::Ma
   const tinygltf::Material& source = translate ? translated : given;
   file->current_uv_sets = gltf_choose_uv_sets(file, source);
   MaterialMaps maps;
-  Material material = convert(file, source, &maps);
+  GlassMap glass;
+  Material material = convert(file, source, &maps, &glass);
   const Grain grain = read_grain(file, source, material);
   const ClearCoat coat = gltf_read_coat(file, source);
   const Sheen sheen = gltf_read_sheen(file, source);
+  const Iridescence film = gltf_read_film(file, source);
   const bool needs_uvs = material.diffuse_texture.texture != kNone || material.emission_texture.texture != kNone ||
-                         has_map(maps) || has_strength(grain) || is_textured(coat) || is_textured(sheen);
+                         has_map(maps) || has_strength(grain) || is_textured(coat) || is_textured(sheen) ||
+                         is_textured(glass) || is_textured(film);
   if (index >= 0 && needs_uvs) file->uv_sets[static_cast<std::size_t>(index)] = file->current_uv_sets;
   const std::uint32_t added = add_material(file->builder, material, source.name);
   if (!is_zero(material.transmission) && !gltf_extension(source.extensions, "KHR_materials_volume"))
     file->builder->glass.push_back(added);
-  if (has_map(maps)) {
+  if (glass.thickness > 0) file->builder->volumes.push_back(added);
+  if (has_map(maps) || glass.transmission > 0) {
     out.material_maps.resize(added);
     out.material_maps.push_back(maps);
   }
@@ -177,6 +167,14 @@ static std::uint32_t read_material(GltfFile* file, int index, const tinygltf::Ma
   if (!is_zero(sheen.color)) {
     out.sheens.resize(added);
     out.sheens.push_back(sheen);
+  }
+  if (glass.transmission > 0) {
+    out.glass_maps.resize(added);
+    out.glass_maps.push_back(glass);
+  }
+  if (film.strength > 0) {
+    out.iridescences.resize(added);
+    out.iridescences.push_back(film);
   }
   return added;
 }

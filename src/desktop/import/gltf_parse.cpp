@@ -27,6 +27,7 @@ const char* const kKnownExtensions[] = {
     "KHR_materials_anisotropy",
     "KHR_materials_clearcoat",
     "KHR_materials_sheen",
+    "KHR_materials_iridescence",
     "KHR_node_visibility",
     "KHR_draco_mesh_compression",
     "EXT_meshopt_compression",

@@ -6,6 +6,7 @@
 
 #include "base/check.h"
 #include "base/color.h"
+#include "desktop/import/fold.h"
 #include "scene/animate.h"
 #include "scene/invisible.h"
 #include "scene/metallic_roughness.h"
@@ -31,6 +32,8 @@ void each_use(SceneArrays* arrays, Visit visit) {
   for (ClearCoat& coat : arrays->clear_coats)
     for (TextureUse* use : {&coat.strength_texture, &coat.roughness_texture, &coat.normal}) visit(use);
   for (Sheen& sheen : arrays->sheens) visit(&sheen.color_texture), visit(&sheen.roughness_texture);
+  for (GlassMap& glass : arrays->glass_maps) visit(&glass.transmission_texture), visit(&glass.thickness_texture);
+  for (Iridescence& film : arrays->iridescences) visit(&film.strength_texture), visit(&film.thickness_texture);
 }
 
 class Reducer {
@@ -129,6 +132,8 @@ void Reducer::fold_metallic_roughness(std::uint32_t index) {
   if (index >= out_.material_maps.size()) return;
   MaterialMaps& maps = out_.material_maps[index];
   if (!has_lobe_map(maps) || is_animated(index, ChannelPath::material_diffuse)) return;
+  // With a map, the colours of texture and vertices are multiplied first.
+  if (out_.materials[index].diffuse_texture.texture != kNone && !out_.colors.empty()) return;
   fold_reflectance(index);
   std::uint8_t value[4] = {255, 255, 255, 255};
   if (maps.specular.texture != kNone || maps.specular_color.texture != kNone) return;
@@ -140,10 +145,15 @@ void Reducer::fold_metallic_roughness(std::uint32_t index) {
   const float roughness =
       within(maps.roughness * (static_cast<float>(value[1]) / 255), maps.roughness_low, maps.roughness_high);
   Material& m = out_.materials[index];
-  set_lobes(maps.model, stored, roughness, 0, &m);
-  m.diffuse = maps.model.base * (1 - metallic);
   maps.metallic_roughness = TextureUse();
   note(Invisible::even_metallic_roughness);
+  if (glass_map_of(scene_, index)) {
+    maps.metallic = maps.metallic_low = maps.metallic_high = metallic;
+    maps.roughness = maps.roughness_low = maps.roughness_high = roughness;
+    return;
+  }
+  set_lobes(maps.model, stored, roughness, 0, &m);
+  m.diffuse = maps.model.base * (1 - metallic);
 }
 
 bool Reducer::fold_color(std::uint32_t index) {
@@ -154,7 +164,8 @@ bool Reducer::fold_color(std::uint32_t index) {
   const float alpha = static_cast<float>(value[3]) * (1.0f / 255.0f);
   const bool is_white = tint == Vec3{1, 1, 1};
   if (!is_white) {
-    const bool has_lobes_from_maps = index < out_.material_maps.size() && has_lobe_map(out_.material_maps[index]);
+    const bool has_lobes_from_maps =
+        glass_map_of(scene_, index) || (index < out_.material_maps.size() && has_lobe_map(out_.material_maps[index]));
     const bool tints_metal = !is_zero(m.specular_tinted) || !is_zero(m.mirror_tinted);
     if (has_lobes_from_maps || (tints_metal && !out_.colors.empty())) return false;
     if (is_animated(index, ChannelPath::material_diffuse)) return false;
@@ -370,8 +381,10 @@ void Reducer::reduce_all() {
     fold_metallic_roughness(i);
     fold_coat(i);
     fold_sheen(i);
+    note(Invisible::black_film, fold_film(scene_, i, &out_));
     fold_grain(i);
     const bool folds_color = fold_color(i), folds_emission = fold_emission(i);
+    fold_glass(scene_, i, &out_);
     if (folds_color || folds_emission) note(Invisible::even_color);
   }
   reduce_animations();
@@ -379,6 +392,7 @@ void Reducer::reduce_all() {
   reduce_lights();
   reduce_normals();
   drop_unused_textures();
+  drop_empty_maps(&out_);
   if (texture_count > 0 && out_.textures.empty() && out_.grains.empty())
     out_.uvs.clear(), out_.second_uvs.clear(), out_.tangents.clear();
   for (std::uint32_t what = 0; what < kInvisibleCount; ++what)

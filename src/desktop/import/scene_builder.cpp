@@ -216,6 +216,7 @@ Scene view_of(const SceneArrays& arrays) {
   scene.triangles = view(arrays.triangles), scene.materials = view(arrays.materials),
   scene.material_maps = view(arrays.material_maps), scene.grains = view(arrays.grains);
   scene.clear_coats = view(arrays.clear_coats), scene.sheens = view(arrays.sheens);
+  scene.glass_maps = view(arrays.glass_maps), scene.iridescences = view(arrays.iridescences);
   scene.tangents = view(arrays.tangents);
   scene.textures = view(arrays.textures), scene.texels = view(arrays.texels);
   scene.lights = view(arrays.lights), scene.cameras = view(arrays.cameras);
@@ -291,14 +292,15 @@ void finish_scene(SceneBuilder* builder, const std::string& name, ImportedScene*
   decide_glass(builder);
   std::size_t count = out.positions.size();
   if (!out.normals.empty()) out.normals.resize(count, Vec3{0, 0, 0});
-  bool textured =
-      std::any_of(out.materials.begin(), out.materials.end(), has_texture) ||
-      std::any_of(out.clear_coats.begin(), out.clear_coats.end(),
-                  [](const ClearCoat& coat) { return is_textured(coat); }) ||
-      std::any_of(out.sheens.begin(), out.sheens.end(), [](const Sheen& sheen) { return is_textured(sheen); }) ||
-      std::any_of(out.material_maps.begin(), out.material_maps.end(), has_map) ||
-      std::any_of(out.grains.begin(), out.grains.end(),
-                  [](const Grain& grain) { return grain.texture.texture != kNone; });
+  auto any_textured = [](const auto& entries) {
+    return std::any_of(entries.begin(), entries.end(), [](const auto& entry) { return is_textured(entry); });
+  };
+  bool textured = std::any_of(out.materials.begin(), out.materials.end(), has_texture) ||
+                  any_textured(out.clear_coats) || any_textured(out.sheens) || any_textured(out.glass_maps) ||
+                  any_textured(out.iridescences) ||
+                  std::any_of(out.material_maps.begin(), out.material_maps.end(), has_map) ||
+                  std::any_of(out.grains.begin(), out.grains.end(),
+                              [](const Grain& grain) { return grain.texture.texture != kNone; });
   if (textured || !out.uvs.empty()) out.uvs.resize(count, Vec2{0, 0});
   const bool reads_second =
       std::any_of(out.textures.begin(), out.textures.end(), [](const Texture& texture) { return texture.uv_set > 0; });
@@ -307,6 +309,8 @@ void finish_scene(SceneBuilder* builder, const std::string& name, ImportedScene*
   if (!out.grains.empty()) out.grains.resize(out.materials.size());
   if (!out.clear_coats.empty()) out.clear_coats.resize(out.materials.size());
   if (!out.sheens.empty()) out.sheens.resize(out.materials.size());
+  if (!out.glass_maps.empty()) out.glass_maps.resize(out.materials.size());
+  if (!out.iridescences.empty()) out.iridescences.resize(out.materials.size());
   make_tangents(builder);
   if (!out.colors.empty()) out.colors.resize(count, Rgba16{65535, 65535, 65535, 65535});
   if (!out.normals.empty() && !out.rest_positions.empty())

@@ -47,6 +47,8 @@ struct SceneArrays {
   std::vector<Grain> grains;                // likewise
   std::vector<ClearCoat> clear_coats;       // likewise
   std::vector<Sheen> sheens;                // likewise
+  std::vector<GlassMap> glass_maps;         // likewise
+  std::vector<Iridescence> iridescences;    // likewise
   std::vector<PackedTangent> tangents;      // of the first vertices; see tangents.h
   std::vector<Texture> textures;
   std::vector<std::uint32_t> texels;
@@ -80,6 +82,7 @@ struct SceneBuilder {
   std::shared_ptr<SceneArrays> out = std::make_shared<SceneArrays>();
   std::vector<std::string> material_names;  // of the first materials
   std::vector<std::uint32_t> glass;         // materials that transmit, of which the file has no volume
+  std::vector<std::uint32_t> volumes;       // materials that transmit and have a texture of their thickness
   std::vector<PartSource> parts;
   std::uint64_t bytes_charged = 0;
   FilesRead files;
@@ -124,6 +127,12 @@ void finish_scene(SceneBuilder* builder, const std::string& name, ImportedScene*
 void require_invertible(const Transform& t, const std::string& name);
 
 inline bool has_strength(const Grain& grain) { return grain.direction.x != 0 || grain.direction.y != 0; }
+inline bool is_textured(const GlassMap& glass) {
+  return glass.transmission_texture.texture != kNone || glass.thickness_texture.texture != kNone;
+}
+inline bool is_textured(const Iridescence& film) {
+  return film.strength_texture.texture != kNone || film.thickness_texture.texture != kNone;
+}
 inline bool is_textured(const Sheen& sheen) {
   return sheen.color_texture.texture != kNone || sheen.roughness_texture.texture != kNone;
 }

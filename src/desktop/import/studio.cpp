@@ -50,8 +50,7 @@ double share_of(const SoftBox& box, const Vec3d& direction) {
 constexpr float kReflectance = 0.08f, kRoughness = 0.25f;
 
 bool mirrors(const Scene& scene, std::uint32_t material) {
-  const Material m = scene.material_maps.count ? lobe_bounds(scene.materials[material], scene.material_maps[material])
-                                               : scene.materials[material];
+  const Material m = lobe_bounds(scene, material);
   if (!is_zero(m.mirror) || !is_zero(m.transmission) || coat_of(scene, material)) return true;
   return reflects_surroundings(m) && (max_component(m.specular) > kReflectance || m.roughness < kRoughness);
 }

@@ -21,7 +21,7 @@ constexpr double kNearMax = 1.0 / 6;   // relative to the scene's size: closer c
 // points found.
 constexpr double kBrightReach = 3, kMiddleReach = 1.5, kBrightMargin = 0.25;
 
-bool is_specular(const Material& m) { return !is_zero(m.mirror) || !is_zero(m.transmission); }
+bool is_specular(const Material& m) { return !is_zero(m.mirror) || !is_zero(m.transmission); }  // somewhere
 
 // Traces light from a point on an emitter to a point on a mirror or glass, and beyond.
 void follow_light(const Reference& reference, const ReferenceSurface& light, const Vec3d& target, Rng* rng,
@@ -37,14 +37,14 @@ void follow_light(const Reference& reference, const ReferenceSurface& light, con
     const Material& m = lobes_of(s);
     if (bounce > 0 && (!is_zero(s.even) || !is_zero(m.specular)))
       remember(s.point, {way, kMirrorMargin * guide->cell_size, kByMirrors}, guide);
-    if (!is_specular(m) || m.unlit) return;
+    if ((is_zero(m.mirror) && is_zero(s.transmission)) || m.unlit) return;
     way = s.point;
     Vec3d direction;
-    if (is_zero(m.transmission)) {
+    if (is_zero(s.transmission)) {
       direction = mirrored(ray.direction, s);
     } else {
       ReferenceBoundary b = meet_boundary(frame, s, gather_contact(reference.world, ray, hit), ray.direction, media);
-      bool reflects = next_double(rng) < b.reflectance;
+      bool reflects = next_double(rng) < max_component(b.reflectance);
       direction = reflects ? mirrored(ray.direction, s) : b.direction;
       if (!reflects) media = b.beyond;
     }

@@ -31,7 +31,7 @@ Vec3d contact_transmittance(const FrameData& frame, const ReferenceContact& cont
     if (is_zero(m.transmission)) continue;
     any = true;
     bool enters = contact.front[i];
-    if (enters || m.thin) result *= to_double(m.transmission);
+    if (enters || m.thin) result *= transmission_of(frame, face, ray.direction);
     (enters || m.thin ? to : from) = static_cast<double>(m.ior);
     if (m.thin) continue;
     Vec3d absorption = to_double(m.absorption);

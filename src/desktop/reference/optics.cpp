@@ -3,6 +3,8 @@
 #include <limits>
 
 #include "base/fmath.h"
+#include "brdf/iridescence.h"
+#include "scene/metallic_roughness.h"
 #include "shade/media.h"
 #include "shade/texture.h"
 
@@ -98,10 +100,28 @@ Vec3d mirrored(const Vec3d& direction, const ReferenceSurface& s, const Vec3d& n
   return normalize(d);
 }
 
+Vec3d facet_reflectance(const ReferenceSurface& s, double cosine, double eta) {
+  double cos_t, reflectance = boundary_reflectance(cosine, eta, &cos_t);
+  if (s.material->thin && reflectance < 1) reflectance = 2 * reflectance / (1 + reflectance);  // all orders
+  const Vec3d bare = {reflectance, reflectance, reflectance};
+  if (!(s.film_strength > 0) || !(reflectance < 1)) return bare;
+  const double root = (static_cast<double>(s.material->ior) - 1) / (static_cast<double>(s.material->ior) + 1);
+  const Vec3d base = Vec3d{1, 1, 1} * (root * root);
+  return bare * (1 - s.film_strength) +
+         film_reflectance(s.film_ior, s.film_thickness, base, eta < 1 ? cosine : cos_t) * s.film_strength;
+}
+
+Vec3d transmission_of(const FrameData& frame, const ReferenceHit& face, const Vec3d& direction) {
+  const std::uint32_t material = material_index(frame, face.triangle);
+  if (!has(frame.mask, Effect::transmission_map) || !glass_map_of(*frame.scene, material))
+    return to_double(frame.scene->materials[material].transmission);
+  return reference_surface(frame, face, direction).transmission;
+}
+
 ReferenceBoundary meet_boundary(const FrameData& frame, const ReferenceSurface& s, const ReferenceContact& contact,
                                 const Vec3d& direction, const MediumStack& media) {
   const Scene& scene = *frame.scene;
-  ReferenceBoundary b = {0, {1, 1, 1}, direction, media};
+  ReferenceBoundary b = {{0, 0, 0}, {1, 1, 1}, direction, {0, 0, 0}, 1, media};
   double eta = 1 / static_cast<double>(s.material->ior);
   if (!s.material->thin) {
     cross_faces(scene, contact, &b.beyond);
@@ -109,11 +129,12 @@ ReferenceBoundary meet_boundary(const FrameData& frame, const ReferenceSurface& 
   }
   Vec3d n = -dot(direction, s.normal) > 0 ? s.normal : s.geometric;
   double cos_i = -dot(direction, n), cos_t;
-  b.reflectance = boundary_reflectance(cos_i, eta, &cos_t);
-  if (s.material->thin && b.reflectance < 1) b.reflectance = 2 * b.reflectance / (1 + b.reflectance);  // all orders
+  boundary_reflectance(cos_i, eta, &cos_t);
+  b.normal = n, b.eta = eta, b.reflectance = facet_reflectance(s, cos_i, eta);
   for (std::uint32_t i = 0; i < contact.count; ++i) {
     const Material& m = material_of(frame, contact.face[i].triangle);
-    if (!is_zero(m.transmission) && (contact.front[i] || m.thin)) b.tint *= to_double(m.transmission);
+    if (!is_zero(m.transmission) && (contact.front[i] || m.thin))
+      b.tint *= transmission_of(frame, contact.face[i], direction);
   }
   if (s.material->thin) return b;
   Vec3d bent = normalize(direction * eta + n * (eta * cos_i - cos_t));

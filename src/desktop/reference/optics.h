@@ -43,12 +43,18 @@ inline Vec3d mirrored(const Vec3d& direction, const ReferenceSurface& s) { retur
 
 // A ray at a glass boundary: the reflected fraction; the rest is tinted, refracted and in other bodies.
 struct ReferenceBoundary {
-  double reflectance;
-  Vec3d tint, direction;
+  Vec3d reflectance;
+  Vec3d tint, direction, normal;  // the normal on the ray's side
+  double eta;                     // n_from / n_to
   MediumStack beyond;
 };
 ReferenceBoundary meet_boundary(const FrameData& frame, const ReferenceSurface& s, const ReferenceContact& contact,
                                 const Vec3d& direction, const MediumStack& media);
+// Reflectance of a boundary for light at a cosine from a facet's normal, with its film.
+Vec3d facet_reflectance(const ReferenceSurface& s, double cosine, double eta);
+
+// Tint of light that passes a face; `direction` is the ray's.
+Vec3d transmission_of(const FrameData& frame, const ReferenceHit& face, const Vec3d& direction);
 
 // Twice the triangle's area along its normal.
 inline Vec3d area_vector(const FrameData& frame, std::uint32_t triangle) {

@@ -5,9 +5,11 @@
 
 #include "base/check.h"
 #include "base/fmath.h"
+#include "brdf/rough_refraction.h"
 #include "desktop/reference/environment.h"
 #include "desktop/reference/guide.h"
 #include "desktop/reference/light.h"
+#include "scene/metallic_roughness.h"
 #include "shade/media.h"
 #include "shade/texture.h"
 
@@ -58,13 +60,44 @@ bool find_surface(const Reference& reference, const ReferenceRay& ray, Path* pat
   return false;
 }
 
+// Reflects or transmits a path at a glass boundary by a uniform number; false: it ends.
+bool pass_boundary(const FrameData& frame, const ReferenceSurface& s, const ReferenceBoundary& boundary, double choice,
+                   const Vec3d& way, Path* path, ReferenceSamples* samples, Vec3d* direction) {
+  const bool is_rough = scatters_passing_light(frame, s);
+  const double alpha = is_rough ? facet_alpha<double>(lobes_of(s)) : 0;
+  Vec3d facet = boundary.normal, reflectance = boundary.reflectance;
+  if (is_rough) {
+    const Pair pair = samples->direction();
+    facet = visible_facet(boundary.normal, -way, alpha, pair.u, pair.v);
+    reflectance = facet_reflectance(s, -dot(way, facet), boundary.eta);
+  }
+  const double share = max_component(reflectance);
+  if (choice < share) {
+    path->weight *= reflectance / share;
+    *direction = mirrored(way, s);
+    if (!is_rough) return true;
+    if (!leaves_body(s)) {  // the glossy lobe has the rest
+      path->weight = path->weight * static_cast<double>(mirror_share(lobes_of(s).roughness));
+      return !is_zero(path->weight);
+    }
+    *direction = way - facet * (2 * dot(way, facet));
+    return dot(*direction, s.geometric) > 0;
+  }
+  path->weight *= boundary.tint * (Vec3d{1, 1, 1} - reflectance) / (1 - share);
+  path->media = boundary.beyond;
+  *direction = boundary.direction;
+  if (!is_rough) return true;
+  *direction = passed_direction(lobes_of(s), way, boundary.normal, facet, boundary.eta);
+  path->weight = path->weight * unmasked_share(dot(*direction, boundary.normal), alpha);
+  return !is_zero(path->weight) && dot(*direction, s.geometric) < 0;
+}
+
 // Continues the path by one of the surface's lobes; false: it ends. Sets the weight and the data for the next emitter.
 bool scatter(const Reference& reference, const ReferenceOptions& options, const ReferenceSurface& s,
              const ReferenceContact& contact, ReferenceRay* ray, Path* path, ReferenceSamples* samples) {
   const FrameData& frame = *reference.world.frame;
-  const Material& m = *s.material;
   Vec3d mirror = s.mirror, to_viewer = -ray->direction;
-  double mirror_share = max_component(mirror), glass_share = is_zero(m.transmission) ? 0 : 1, lobe_share = 0;
+  double mirror_share = max_component(mirror), glass_share = is_zero(s.transmission) ? 0 : 1, lobe_share = 0;
   if (options.transport == Transport::physical) lobe_share = lobe_weight(s, to_viewer);
   double total = mirror_share + glass_share + lobe_share + s.coat_mirror;
   if (!(total > 0)) return false;
@@ -80,14 +113,9 @@ bool scatter(const Reference& reference, const ReferenceOptions& options, const 
     direction = mirrored(ray->direction, s, s.coat_normal);
   } else if ((choice -= s.coat_mirror) < glass_share) {
     path->weight = path->weight * (s.passes * total / glass_share);
-    ReferenceBoundary boundary = meet_boundary(frame, s, contact, ray->direction, path->media);
-    if (choice / glass_share < boundary.reflectance) {
-      direction = mirrored(ray->direction, s);
-    } else {
-      direction = boundary.direction;
-      path->weight *= boundary.tint;
-      path->media = boundary.beyond;
-    }
+    const ReferenceBoundary boundary = meet_boundary(frame, s, contact, ray->direction, path->media);
+    if (!pass_boundary(frame, s, boundary, choice / glass_share, ray->direction, path, samples, &direction))
+      return false;
   } else {
     choice = (choice - glass_share) / lobe_share;
     if (!sample_guided(s, to_viewer, choice, samples->direction(), &direction)) return false;

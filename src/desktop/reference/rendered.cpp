@@ -5,6 +5,8 @@
 #include "base/check.h"
 #include "desktop/reference/environment.h"
 #include "desktop/reference/light.h"
+#include "scene/metallic_roughness.h"
+#include "shade/rough_glass.h"
 #include "shade/sample_points.h"
 #include "shade/trace_spans.h"
 
@@ -16,16 +18,40 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 struct Branch {
   std::uint32_t depth;  // reflections and refractions so far
   MediumStack media;
+  double width = 0;  // BeamWidth::alpha
 };
 
 Vec3d follow(const Reference& reference, const ReferenceRay& ray, const Branch& branch);
+
+// Radiance of a beam that hits nothing.
+Vec3d radiance_behind(const FrameData& frame, const Vec3d& direction, const Branch& branch, const Vec3d& thin) {
+  if (!(branch.width > 0) || !has(frame.mask, Effect::environment) || !environment_of(*frame.scene)) return thin;
+  return to_double(environment_in_beam(*frame.scene, to_float(direction), static_cast<float>(branch.width)));
+}
 
 Vec3d spawn(const Reference& reference, const ReferenceSurface& s, const Vec3d& direction, const Vec3d& weight,
             const Branch& from, const MediumStack& media) {
   const FrameData& frame = *reference.world.frame;
   if (is_zero(weight)) return {0, 0, 0};
-  if (from.depth >= frame.settings.ray_depth) return weight * radiance_beyond_depth(frame, direction);
-  return weight * follow(reference, leave(frame, s, direction, kInfinity), {from.depth + 1, media});
+  if (from.depth >= frame.settings.ray_depth)
+    return weight * radiance_behind(frame, direction, from, radiance_beyond_depth(frame, direction));
+  return weight * follow(reference, leave(frame, s, direction, kInfinity), {from.depth + 1, media, from.width});
+}
+
+// Light that passes a glass boundary; `passing` is the fraction that is not reflected.
+Vec3d transmitted(const Reference& reference, const ReferenceSurface& s, const ReferenceBoundary& b, const Vec3d& way,
+                  const Vec3d& passing, const Branch& branch) {
+  const Vec3d weight = b.tint * passing * s.passes;
+  Branch beam = branch;
+  if (!scatters_passing_light(*reference.world.frame, s)) {
+    if (!s.material->thin) beam.width *= b.eta;
+    return spawn(reference, s, b.direction, weight, beam, b.beyond);
+  }
+  const Material& m = lobes_of(s);
+  const FacetPassage<double> passage = through_facets(m, way, b.normal, b.eta);
+  beam.width = widened_beam(m, branch.width, b.eta);
+  if (!(passage.share > 0) || !(dot(passage.direction, s.geometric) < 0)) return {0, 0, 0};
+  return spawn(reference, s, passage.direction, weight * passage.share, beam, b.beyond);
 }
 
 // Radiance that leaves a surface back along the ray.
@@ -41,10 +67,12 @@ Vec3d shade(const Reference& reference, const ReferenceRay& ray, const Reference
   if (lobe_weight(s, -ray.direction) > 0) sum += sum_light_points(reference, s, -ray.direction, true);
   Vec3d turned = {0, 0, 0};
   if (!is_zero(lobes_of(s).mirror)) turned += s.mirror;
-  if (!is_zero(m.transmission)) {
-    ReferenceBoundary b = meet_boundary(frame, s, contact, ray.direction, branch.media);
-    turned += Vec3d{b.reflectance, b.reflectance, b.reflectance} * s.passes;
-    sum += spawn(reference, s, b.direction, b.tint * ((1 - b.reflectance) * s.passes), branch, b.beyond);
+  if (!is_zero(s.transmission)) {
+    const ReferenceBoundary b = meet_boundary(frame, s, contact, ray.direction, branch.media);
+    Vec3d reflected = b.reflectance, passing = Vec3d{1, 1, 1} - reflected;
+    if (scatters_passing_light(frame, s)) divide_at_facets(s, lobes_of(s), &reflected, &passing);
+    turned += reflected * s.passes;
+    sum += transmitted(reference, s, b, ray.direction, passing, branch);
   }
   const Vec3d by_coat = {s.coat_mirror, s.coat_mirror, s.coat_mirror};
   sum += spawn(reference, s, mirrored(ray.direction, s, s.coat_normal), by_coat, branch, branch.media);
@@ -79,7 +107,7 @@ Vec3d follow(const Reference& reference, const ReferenceRay& ray, const Branch& 
     if (!face) continue;
     return sum + carried * shade(reference, ray, reference_surface(frame, *face, ray.direction), contact, branch);
   }
-  return sum + carried * radiance_behind(frame, ray.direction);
+  return sum + carried * radiance_behind(frame, ray.direction, branch, radiance_behind(frame, ray.direction));
 }
 
 }  // namespace

@@ -3,7 +3,9 @@
 #include "base/fmath.h"
 #include "brdf/clear_coat.h"
 #include "brdf/directions.h"
+#include "brdf/iridescence.h"
 #include "brdf/microfacet.h"
+#include "brdf/rough_refraction.h"
 #include "brdf/sheen.h"
 #include "indirect/environment.h"
 #include "scene/metallic_roughness.h"
@@ -28,18 +30,20 @@ Vec3d numbers_at(const FrameData& frame, const TextureUse& use, const ReferenceS
   return to_double(sample_numbers(*frame.scene, use, uv_of(frame, use, s), frame.settings.texture_filter));
 }
 
-// Applies a metallic-roughness texture by the formulas of the glTF specification, secs. 3.9.2 and B.2.2, and the
-// mirror's share of src/desktop/import/README.md.
-void apply_metallic_roughness(const FrameData& frame, const MaterialMaps& maps, const Vec3d& tint,
-                              ReferenceSurface* s) {
+// Applies textures of metallic, roughness and transmission by the formulas of the glTF specification, secs. 3.9.2 and
+// B.2.2, KHR_materials_transmission and the mirror's share of src/desktop/import/README.md. `glass` may be null.
+void apply_maps(const FrameData& frame, const MaterialMaps& maps, const GlassMap* glass, const Vec3d& tint,
+                ReferenceSurface* s) {
   Vec3d numbers = {255, 255, 255}, dielectric = to_double(maps.model.dielectric);
-  double grazing = static_cast<double>(maps.model.grazing);
-  if (maps.metallic_roughness.texture != kNone) numbers = numbers_at(frame, maps.metallic_roughness, *s);
-  if (maps.specular.texture != kNone) {  // KHR_materials_specular
+  double grazing = static_cast<double>(maps.model.grazing), passes = 0;
+  const bool varies = has(frame.mask, Effect::metallic_roughness);
+  if (varies && maps.metallic_roughness.texture != kNone) numbers = numbers_at(frame, maps.metallic_roughness, *s);
+  if (varies && maps.specular.texture != kNone) {  // KHR_materials_specular
     const double share = static_cast<double>(color_at(frame, maps.specular, *s).alpha);
     dielectric = dielectric * share, grazing *= share;
   }
-  if (maps.specular_color.texture != kNone) dielectric *= to_double(color_at(frame, maps.specular_color, *s).rgb);
+  if (varies && maps.specular_color.texture != kNone)
+    dielectric *= to_double(color_at(frame, maps.specular_color, *s).rgb);
   auto within = [](double x, float low, float high) {
     return std::fmin(std::fmax(x, static_cast<double>(low)), static_cast<double>(high));
   };
@@ -49,14 +53,58 @@ void apply_metallic_roughness(const FrameData& frame, const MaterialMaps& maps, 
       within(numbers.y / 255 * static_cast<double>(maps.roughness), maps.roughness_low, maps.roughness_high);
   const Vec3d color = to_double(maps.model.base) * tint;
   const double smooth = std::fmax(0, 1 - roughness / 0.3), mirrored = smooth * smooth;
-  s->diffuse = color * (1 - metallic);
+  if (glass) {
+    passes = static_cast<double>(glass->transmission);
+    if (glass->transmission_texture.texture != kNone)
+      passes *= numbers_at(frame, glass->transmission_texture, *s).x / 255;
+    s->transmission = color * (passes * (1 - metallic));
+    double thickness = s->material->thin ? static_cast<double>(glass->thickness) : 0;
+    if (glass->thickness_texture.texture != kNone) thickness *= numbers_at(frame, glass->thickness_texture, *s).y / 255;
+    for (int c = 0; c < 3; ++c)
+      s->transmission[c] *= det_exp(-static_cast<double>(s->material->absorption[c]) * thickness);
+  }
+  s->diffuse = color * ((1 - metallic) * (1 - passes));
   const Vec3d reflectance = dielectric * (1 - metallic) + color * metallic;
-  s->mirror = reflectance * mirrored, s->specular = reflectance * (1 - mirrored);
+  s->mirror = reflectance * (mirrored * (1 - passes * (1 - metallic))), s->specular = reflectance * (1 - mirrored);
   s->mapped = *s->material, s->is_mapped = true;
   s->mapped.roughness = static_cast<float>(roughness * roughness);
   s->mapped.grazing = static_cast<float>((grazing * (1 - metallic) + metallic) * (1 - mirrored));
   s->mapped.specular = to_float(s->specular);
   s->mapped.mirror = to_float(s->mirror);
+}
+
+// KHR_materials_iridescence, under the mirror's share.
+void put_film_on(const FrameData& frame, const Vec3d& direction, ReferenceSurface* s) {
+  const Iridescence* film = iridescence_of(*frame.scene, frame.scene->triangles[s->triangle].material());
+  if (!film || !has(frame.mask, Effect::iridescence)) return;
+  s->film_strength = static_cast<double>(film->strength), s->film_ior = static_cast<double>(film->ior);
+  if (film->strength_texture.texture != kNone)
+    s->film_strength *= numbers_at(frame, film->strength_texture, *s).x / 255;
+  const double green =
+      film->thickness_texture.texture == kNone ? 1 : numbers_at(frame, film->thickness_texture, *s).y / 255;
+  s->film_thickness =
+      static_cast<double>(film->thickness_low) * (1 - green) + static_cast<double>(film->thickness_high) * green;
+  if (!(s->film_strength > 0)) return;
+  const Material& lobes = lobes_of(*s);
+  const double smooth = std::fmax(0, 1 - std::sqrt(static_cast<double>(lobes.roughness)) / 0.3), k = smooth * smooth;
+  Vec3d f0 = s->specular + s->mirror;
+  if (!is_zero(s->transmission)) {
+    const double root = (static_cast<double>(lobes.ior) - 1) / (static_cast<double>(lobes.ior) + 1);
+    f0 = k < 1 ? s->specular / (1 - k) : Vec3d{1, 1, 1} * (root * root);
+  }
+  if (!(max_component(f0) > 0)) return;
+  const double cosine = std::fabs(dot(s->normal, normalize(direction)));
+  const Vec3d seen = film_reflectance(s->film_ior, s->film_thickness, f0, cosine);
+  const double lobe = max_component(s->specular) / max_component(f0),
+               mirror = max_component(s->mirror) / max_component(f0);
+  auto mixed = [&](const Vec3d& with, double share) {
+    Vec3d sum = (f0 * (1 - s->film_strength) + with * s->film_strength) * share;
+    for (int c = 0; c < 3; ++c) sum[c] = std::fmin(sum[c], 1);
+    return sum;
+  };
+  s->specular = mixed(film_f0(seen, cosine), lobe), s->mirror = mixed(seen, mirror);
+  if (!s->is_mapped) s->mapped = *s->material, s->is_mapped = true;
+  s->mapped.specular = to_float(s->specular), s->mapped.mirror = to_float(s->mirror);
 }
 
 // Probabilities of sampling the glossy lobe and the coat's lobe instead of the diffuse one.
@@ -222,6 +270,7 @@ ReferenceSurface reference_surface(const FrameData& frame, const ReferenceHit& h
   };
   s.diffuse = to_double(m.diffuse) * tint;
   s.specular = tinted(m.specular, m.specular_tinted), s.mirror = tinted(m.mirror, m.mirror_tinted);
+  s.transmission = has(frame.mask, Effect::refraction) ? to_double(m.transmission) : Vec3d{0, 0, 0};
   s.is_mapped = false, s.open = 1;
   const Vec3d unmapped = s.normal;
   if (scene.material_maps.count) {
@@ -232,9 +281,15 @@ ReferenceSurface reference_surface(const FrameData& frame, const ReferenceHit& h
       const double red = numbers_at(frame, maps.occlusion, s).x;
       s.open = 1 - static_cast<double>(maps.occlusion_strength) * (1 - red / 255);
     }
-    if (has(frame.mask, Effect::metallic_roughness) && has_lobe_map(maps))
-      apply_metallic_roughness(frame, maps, tint, &s);
+    const GlassMap* glass = has(frame.mask, Effect::transmission_map) ? glass_map_of(scene, t.material()) : nullptr;
+    if (glass || (has(frame.mask, Effect::metallic_roughness) && has_lobe_map(maps)))
+      apply_maps(frame, maps, glass, tint, &s);
   }
+  if (leaves_body(s) && has(frame.mask, Effect::rough_refraction) && is_rough_glass(m)) {
+    if (!s.is_mapped) s.mapped = m, s.is_mapped = true;
+    s.specular = {0, 0, 0}, s.mapped.specular = {0, 0, 0}, s.mapped.grazing = 0;
+  }
+  put_film_on(frame, direction, &s);
   s.grain = {0, 0, 0};
   if (has(frame.mask, Effect::anisotropy) && scene.grains.count)
     s.grain = grain_of(frame, scene.grains[t.material()], corner, s);
@@ -244,6 +299,10 @@ ReferenceSurface reference_surface(const FrameData& frame, const ReferenceHit& h
   put_sheen_on(frame, direction, &s);
   put_coat_on(frame, corner, direction, unmapped, &s);
   return s;
+}
+
+bool scatters_passing_light(const FrameData& frame, const ReferenceSurface& s) {
+  return has(frame.mask, Effect::rough_refraction) && is_rough_glass(*s.material) && lobes_of(s).roughness > kAlphaMin;
 }
 
 ReferenceRay leave(const FrameData& frame, const ReferenceSurface& s, const Vec3d& direction, double t_max) {

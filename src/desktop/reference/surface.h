@@ -19,6 +19,9 @@ struct ReferenceSurface : LobeFrameD {
   const Material* material;
   Material mapped;  // the material with its lobes modified by its maps, if is_mapped
   bool is_mapped;
+  Vec3d transmission;  // tint of light that passes; zero: opaque
+  // The thin film, as in SurfaceFilm; its strength is 0 without one.
+  double film_strength = 0, film_ior = 0, film_thickness = 0;
   double open;  // fraction of ambient light left by an occlusion map
   // The sheen under the coat, as in SurfaceSheen, and the albedo of the diffuse lobe and the sheen for light from
   // everywhere.
@@ -36,6 +39,11 @@ struct ReferenceSurface : LobeFrameD {
 inline const Material& lobes_of(const ReferenceSurface& s) { return s.is_mapped ? s.mapped : *s.material; }
 
 ReferenceSurface reference_surface(const FrameData& frame, const ReferenceHit& hit, const Vec3d& direction);
+
+// Returns whether light that passes the surface is scattered, Effect::rough_refraction.
+bool scatters_passing_light(const FrameData& frame, const ReferenceSurface& s);
+// Returns whether a ray at the surface is inside its body.
+inline bool leaves_body(const ReferenceSurface& s) { return !s.material->thin && !s.front; }
 
 // Makes a ray from the surface. Directions below the flat triangle but above the curved surface described by the vertex
 // normals start where the renderer starts them, see curved_origin() in surface.h.

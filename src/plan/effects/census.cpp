@@ -3,6 +3,8 @@
 #include "base/check.h"
 #include "base/limits.h"
 #include "brdf/clear_coat.h"
+#include "brdf/iridescence.h"
+#include "brdf/rough_refraction.h"
 #include "brdf/sheen.h"
 #include "indirect/environment.h"
 #include "scene/channel.h"
@@ -13,13 +15,17 @@
 namespace pocketray {
 namespace {
 
-// Returns whether a texture of the material's clear coat or sheen has a property.
+// Returns whether a texture of the material's clear coat, sheen, film or glass has a property.
 template <class Property>
 bool any_of_layers(const Scene& scene, std::uint32_t material, Property property) {
   const ClearCoat* coat = coat_of(scene, material);
   const Sheen* sheen = sheen_of(scene, material);
+  const Iridescence* film = iridescence_of(scene, material);
+  const GlassMap* glass = glass_map_of(scene, material);
   return (coat && (property(coat->strength_texture) || property(coat->roughness_texture) || property(coat->normal))) ||
-         (sheen && (property(sheen->color_texture) || property(sheen->roughness_texture)));
+         (sheen && (property(sheen->color_texture) || property(sheen->roughness_texture))) ||
+         (film && (property(film->strength_texture) || property(film->thickness_texture))) ||
+         (glass && (property(glass->transmission_texture) || property(glass->thickness_texture)));
 }
 
 bool reads_levels(const Scene& scene, std::uint32_t material) {
@@ -109,14 +115,18 @@ Census take_census(const Scene& scene, const Settings& settings) {
   for (const Reduction& r : scene.reductions) note(&c, r.what, r.count);
   for (std::uint32_t i = 0; i < scene.materials.count; ++i) {
     if (!(used[i / 32] >> i % 32 & 1)) continue;
-    const Material m =
-        scene.material_maps.count ? lobe_bounds(scene.materials[i], scene.material_maps[i]) : scene.materials[i];
+    const Material m = lobe_bounds(scene, i);
     const ClearCoat* coat = coat_of(scene, i);
     if (coat && !shows_coat(scene, *coat)) note(&c, Invisible::black_coat, 1), coat = nullptr;
     const bool shines = coat && has_lobe(*coat);
     const Sheen* sheen = sheen_of(scene, i);
     if (sheen && !shows_sheen(scene, *sheen)) note(&c, Invisible::black_sheen, 1), sheen = nullptr;
     c.sheened += sheen != nullptr;
+    const Iridescence* film = iridescence_of(scene, i);
+    if (film && !shows_film(scene, *film)) note(&c, Invisible::black_film, 1), film = nullptr;
+    c.iridescent += film != nullptr;
+    c.glass_mapped += !is_zero(m.transmission) && glass_map_of(scene, i);
+    c.rough_glass += is_rough_glass(scene.materials[i]);
     bool is_bumpy = coat && shows_normal_map(scene, coat->normal, coat->normal_scale);
     bool has_normal_map = coat && coat->normal.texture != kNone, is_occluded = false;
     if (scene.material_maps.count) {

@@ -58,6 +58,14 @@ constexpr EffectRule kRules[] = {
      [](const EffectCall& c) { return by_materials(c, c.census.coated, "have a clear coat", Invisible::black_coat); }},
     {Effect::sheen,
      [](const EffectCall& c) { return by_materials(c, c.census.sheened, "have a sheen", Invisible::black_sheen); }},
+    {Effect::transmission_map,
+     [](const EffectCall& c) { return by_materials(c, c.census.glass_mapped, "transmit light by textures"); }},
+    {Effect::rough_refraction,
+     [](const EffectCall& c) { return by_materials(c, c.census.rough_glass, "transmit light and are rough"); }},
+    {Effect::iridescence,
+     [](const EffectCall& c) {
+       return by_materials(c, c.census.iridescent, "have a thin film", Invisible::black_film);
+     }},
     {Effect::mip_map, decide_mip_map},
     {Effect::back_face_culling,
      [](const EffectCall& c) { return by_materials(c, c.census.one_sided, "are one-sided"); }},

@@ -50,6 +50,7 @@ EffectDecision with_invisible(const EffectCall& call, EffectDecision decision, I
                                            "white",
                                            "with a black texture",
                                            "with a black texture",
+                                           "with a black texture",
                                            "with a black texture"};
   static_assert(sizeof kTexts / sizeof kTexts[0] == kInvisibleCount, "one for each");
   const int what = static_cast<int>(invisible);
