@@ -221,10 +221,11 @@ Option add_environment_option(Command command, std::string* name) {
 
 void add_look_options(Command command, CommonOptions* o, std::initializer_list<const char*> own_look) {
   Option environment = add_environment_option(command, &o->environment);
-  Option background = command.add_option("--background COLOUR", o->background, "colour where nothing is hit")
-                          .default_str("the scene's")
-                          .details("#rrggbb as displayed without exposure and tone (quote it), or linear radiance as r,g,b.")
-                          .excludes(environment, "the environment is the background");
+  Option background =
+      command.add_option("--background COLOUR", o->background, "colour where nothing is hit")
+          .default_str("the scene's")
+          .details("#rrggbb as displayed without exposure and tone (quote it), or linear radiance as r,g,b.")
+          .excludes(environment, "the environment is the background");
   Option light = command.add_option("--light NAME", o->light, "light for a scene that has none")
                      .one_of({"key", "sun", "none"})
                      .capture_default_str()

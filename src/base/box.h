@@ -25,6 +25,10 @@ inline float half_area(const Box& b) {
   Vec3 e = extent(b);
   return e.x * e.y + e.y * e.z + e.z * e.x;
 }
+inline bool overlaps(const Box& a, const Box& b) {
+  return a.low.x <= b.high.x && a.low.y <= b.high.y && a.low.z <= b.high.z && a.high.x >= b.low.x &&
+         a.high.y >= b.low.y && a.high.z >= b.low.z;
+}
 inline bool contains(const Box& outer, const Box& inner) {
   return outer.low.x <= inner.low.x && outer.low.y <= inner.low.y && outer.low.z <= inner.low.z &&
          outer.high.x >= inner.high.x && outer.high.y >= inner.high.y && outer.high.z >= inner.high.z;

@@ -17,6 +17,7 @@ constexpr std::uint32_t kTextureCountMax = 4096;
 constexpr std::uint32_t kTextureSideMax = 16384;
 constexpr std::uint32_t kRadiositySideMax = 256;     // nodes along a side of a grid
 constexpr std::uint32_t kEnvironmentSideMax = 1024;  // texels; the bilinear filter counts in int
+constexpr float kSunRadiusMax = 0.1f;                // radians
 constexpr float kEnvironmentScaleMin = 0x1p-40f, kEnvironmentScaleMax = 0x1p40f;
 constexpr std::uint32_t kLightCountMax = 4096;       // lights of a scene
 constexpr std::uint32_t kPointLightCountMax = 4096;  // after area lights have become points
@@ -24,8 +25,9 @@ constexpr std::uint32_t kPointsPerAreaLightMax = 256;
 constexpr std::uint32_t kLightCornerMax = 8;  // of flat lamps in closed form
 // With fewer lights, all are tested for shadows. Chosen: among few lights, hardly any are weak enough to skip.
 constexpr std::uint32_t kSelectedLightsMin = 16;
-constexpr std::uint32_t kVirtualLightMax = 512;  // of instant radiosity
-constexpr std::uint32_t kEnvironmentLightMax = 256;
+constexpr std::uint32_t kVirtualLightMax = 512;        // of instant radiosity
+constexpr std::uint32_t kEnvironmentLightMax = 256;    // for the 4 × 4 pixels of a pattern
+constexpr std::uint32_t kEnvironmentLightRoom = 1024;  // of all patterns
 constexpr std::uint32_t kCameraCountMax = 256;
 constexpr std::uint32_t kNodeCountMax = 1u << 16;
 constexpr std::uint32_t kChannelKeyCountMax = 1u << 22;  // over all animation channels together

@@ -219,7 +219,7 @@ inline constexpr SettingRow kSettingList[] = {
      ""},
     {"environment-shadows",
      "directions tested for the environment's shadows",
-     "each pixel traces 1/16 of them; 0: no shadows",
+     "each pixel traces 1/16 of them, others than pixels beside it; 0: no shadows",
      nullptr,
      count_field<&Quality::environment_shadows>(Quantity::environment_shadows),
      2,

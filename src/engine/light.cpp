@@ -55,7 +55,9 @@ void choose_kernels(Renderer* renderer) {
   renderer->frame.kernels.surface = find_surface_function(renderer->effects.mask);
   renderer->frame.kernels.first_surface = renderer->frame.kernels.surface;
   renderer->frame.kernels.add_later_light =
-      has(renderer->effects.mask, Effect::instant_radiosity) ? add_later_virtual_light : nullptr;
+      has(renderer->effects.mask, Effect::environment_shadow)  ? add_later_environment
+      : has(renderer->effects.mask, Effect::instant_radiosity) ? add_later_virtual_light
+                                                               : nullptr;
   find_texture_functions(&renderer->frame);
   find_surroundings(&renderer->frame);
   if (renderer->effects.mask & kMapEffects & kEffectsBuilt)
@@ -139,10 +141,10 @@ void make_tracers(Renderer* renderer) {
         window.shared = {&scratch.shared_pixels[i * pixels], pixels};
       keep_window(window, &renderer->tracers[i]);
     }
-    if (is_interleaved(renderer->effects.mask) && renderer->scratch.interleaved_pixels.count) {
-      const std::uint32_t count = kept_pixel_count(renderer->settings);
-      keep_interleaved_pixels({&renderer->scratch.interleaved_pixels[i * count], count}, &renderer->tracers[i]);
-    }
+    const std::uint32_t kept = kept_pixel_count(renderer->settings, renderer->effects.mask);
+    if (is_interleaved(renderer->effects.mask) &&
+        renderer->scratch.interleaved_pixels.count >= renderer->settings.threads * kept)
+      keep_interleaved_pixels({&renderer->scratch.interleaved_pixels[i * kept], kept}, &renderer->tracers[i]);
     if (renderer->scratch.light_entries.count) {
       const std::uint32_t entries = search_entry_count(renderer->lights.selected_max);
       renderer->tracers[i].light_entries = {&renderer->scratch.light_entries[i * entries], entries};
@@ -164,12 +166,15 @@ Status aim_camera(Renderer* renderer) {
     frame_by_default(renderer);
   RETURN_IF_ERROR(make_camera_rays(renderer->view.camera, renderer->settings.width, renderer->settings.height,
                                    &renderer->frame.view.camera));
+  if (!renderer->view.camera_overridden && renderer->scene.camera_near.count)
+    set_near_plane(renderer->scene.camera_near[renderer->view.camera_index], renderer->frame.geometry.positions,
+                   renderer->scene.triangles, &renderer->frame.view.camera);
   if (has(renderer->effects.mask, Effect::mip_map))
     renderer->frame.view.cone = pixel_cone(renderer->frame.view.camera, renderer->settings.samples_per_pixel);
   renderer->frame.view.eye_media = MediumStack();
   if (has(renderer->effects.mask, Effect::refraction))
     renderer->frame.view.eye_media =
-        media_at(renderer->frame, renderer->frame.view.camera.eye, renderer->frame.view.camera.forward);
+        media_at(renderer->frame, near_middle(renderer->frame.view.camera), renderer->frame.view.camera.forward);
   return success();
 }
 

@@ -100,7 +100,8 @@ bool place_in_map(const LightMap& map, const CameraRays& camera, bool is_of_fram
 
 bool same_camera(const CameraRays& a, const CameraRays& b) {
   return a.eye == b.eye && a.forward == b.forward && a.right == b.right && a.up == b.up &&
-         a.orthographic == b.orthographic && a.width == b.width && a.height == b.height;
+         a.near_distance == b.near_distance && a.orthographic == b.orthographic && a.width == b.width &&
+         a.height == b.height;
 }
 
 // Finds the surface of a sample that takes light from a map, unless it is one that others are seen through. Without

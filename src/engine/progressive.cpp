@@ -29,7 +29,7 @@ struct Refinement {
 // Returns whether each pixel costs as much without its neighbours as with them.
 bool are_pixels_separate(const FrameData& frame) {
   if (frame.kernels.trace_strip) return false;
-  return frame.geometry.ray_by_ray || frame.geometry.accel_info->packets_by_rays || frame.view.camera.orthographic;
+  return frame.geometry.ray_by_ray || frame.geometry.accel_info->packets_by_rays || !frame.view.camera.has_one_origin;
 }
 bool leaves_out_coarser(const Refinement& r) {
   return r.progressive->step < kCoarsestStep && !r.progressive->is_afresh && are_pixels_separate(r.renderer->frame);

@@ -220,7 +220,8 @@ Status build_renderer_unexposed(Renderer* renderer) {
         arena_array<CellCorner>(&renderer->memory.persistent, selective_corner_count(renderer->settings));
   if (is_interleaved(renderer->effects.mask))
     renderer->scratch.interleaved_pixels = arena_array<InterleavedPixel>(
-        &renderer->memory.persistent, renderer->settings.threads * kept_pixel_count(renderer->settings));
+        &renderer->memory.persistent,
+        renderer->settings.threads * kept_pixel_count(renderer->settings, renderer->effects.mask));
   if (plans_window(renderer->settings)) {
     const std::uint32_t count = renderer->settings.threads * window_pixel_count(renderer->settings);
     renderer->scratch.window_pixels = arena_array<Vec3>(&renderer->memory.persistent, count);

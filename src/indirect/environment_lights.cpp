@@ -24,8 +24,10 @@ void hilbert_place(std::uint32_t side, std::uint32_t n, std::uint32_t* column, s
   *column = x, *row = y;
 }
 
-// Lights are made of cells, which hold several texels or a part of a large texel: few enough for CPUs without an FPU,
-// and small enough that no cell has several lights in its middle.
+constexpr std::uint32_t kVariantMax = 4;  // patterns from which a pixel takes light
+
+// Lights are made of cells of the first map for glossy lobes, which lacks the sun. A cell is a texel, several, or a
+// part of one: few enough for CPUs without an FPU, and small enough that hardly any has several lights in its middle.
 constexpr std::uint32_t kCellsAlong = 64;
 
 // Light of a cell, up to a common factor.
@@ -38,16 +40,18 @@ struct CellLight {
 // weights of 10 bits and places of 5.
 static_assert(kEnvironmentSideMax / kCellsAlong <= 16, "64 bits hold the sums");
 CellLight cell_light(const Scene& scene, std::uint32_t n) {
-  const std::uint32_t side = scene.environment_info[0].side;
+  const EnvironmentInfo& info = scene.environment_info[0];
+  const std::uint32_t* texels = scene.environment_texels.data + gloss_level_begin(info.side, info.gloss_side, 0);
+  const std::uint32_t side = info.gloss_side;
   const std::uint32_t along = side > kCellsAlong ? side / kCellsAlong : 1;  // texels of the cell
   std::uint32_t column, row;
   hilbert_place(kCellsAlong, n, &column, &row);
   std::uint64_t color[3] = {}, sum = 0, across = 0, down = 0;
   for (std::uint32_t y = 0; y < along; ++y)
     for (std::uint32_t x = 0; x < along; ++x) {
-      const std::uint32_t texel =
-          side > kCellsAlong ? scene.environment_texels[(row * along + y) * side + column * along + x]
-                             : scene.environment_texels[row * side / kCellsAlong * side + column * side / kCellsAlong];
+      const std::uint32_t texel = side > kCellsAlong
+                                      ? texels[(row * along + y) * side + column * along + x]
+                                      : texels[row * side / kCellsAlong * side + column * side / kCellsAlong];
       const std::uint32_t part[3] = {texel & 511, texel >> 9 & 511, texel >> 18 & 511}, exponent = texel >> 27;
       const std::uint64_t luminance = std::uint64_t(218 * part[0] + 732 * part[1] + 74 * part[2]) << exponent;
       for (int c = 0; c < 3; ++c) color[c] += std::uint64_t(part[c]) << exponent;
@@ -73,8 +77,11 @@ CellLight cell_light(const Scene& scene, std::uint32_t n) {
 void place_environment_lights(const Scene& scene, std::uint32_t count, EnvironmentLights* lights) {
   CHECK(lights != nullptr && environment_of(scene) != nullptr);
   CHECK_LE(count, kEnvironmentLightMax);
-  lights->count = 0, lights->wanted = count;
-  CHECK_LE(environment_of(scene)->side * environment_of(scene)->side, scene.environment_texels.count);
+  lights->count = 0, lights->wanted = count, lights->variants = 1;
+  while (lights->variants < kVariantMax && 2 * lights->variants * count <= kEnvironmentLightRoom) lights->variants *= 2;
+  count *= lights->variants;
+  CHECK_LE(environment_texel_count(environment_of(scene)->side, environment_of(scene)->gloss_side),
+           scene.environment_texels.count);
   constexpr std::uint32_t cell_count = kCellsAlong * kCellsAlong;
   double total = 0;
   for (std::uint32_t n = 0; n < cell_count; ++n) total += cell_light(scene, n).luminance;

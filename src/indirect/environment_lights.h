@@ -13,9 +13,10 @@ struct EnvironmentLight {
   Vec3 irradiance;  // on a surface facing it, relative to the other lights'
 };
 struct EnvironmentLights {
-  EnvironmentLight light[kEnvironmentLightMax];  // lights close in direction are close in order
-  std::uint32_t count = 0;                       // 0: the environment is black
-  std::uint32_t wanted = 0;                      // count that was requested
+  EnvironmentLight light[kEnvironmentLightRoom];  // lights close in direction are close in order
+  std::uint32_t count = 0;                        // 0: the environment is black
+  std::uint32_t wanted = 0;                       // count that was requested for a point
+  std::uint32_t variants = 1;                     // groups of so many lights stand for each of these
 };
 
 // True if default lights go with a studio. They cast shadows; the studio's would be faint and double the rays.
@@ -30,7 +31,8 @@ inline bool plans_environment_lights(const Scene& scene, const Settings& setting
          !(settings.forced_off & effects) && has(kAllEffects, Effect::environment_shadow);
 }
 
-// Places `count` lights for the scene's environment, at most kEnvironmentLightMax.
+// Places lights for the scene's environment: `count` groups of equal share, at most kEnvironmentLightMax. Points close
+// to each other use different lights of a group.
 void place_environment_lights(const Scene& scene, std::uint32_t count, EnvironmentLights* lights);
 
 }  // namespace pocketray

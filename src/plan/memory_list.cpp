@@ -32,7 +32,7 @@ std::size_t groups_need(const Scene&, const PlannedFor& in) {
 
 std::size_t interleaved_need(const Scene&, const PlannedFor& in) {
   if (!is_interleaved(in.mask)) return 0;
-  return arena_need<InterleavedPixel>(std::size_t(in.settings.threads) * kept_pixel_count(in.settings));
+  return arena_need<InterleavedPixel>(std::size_t(in.settings.threads) * kept_pixel_count(in.settings, in.mask));
 }
 
 using In = PlannedFor;

@@ -194,7 +194,7 @@ void leave_out_environment(Scene* scene) {
   CHECK(scene != nullptr);
   if (scene->environment_info.empty()) return;
   const Vec3 mean = max(scene->environment_info[0].irradiance[0], Vec3{0, 0, 0});
-  scene->environment_info = {}, scene->environment_texels = {};
+  scene->environment_info = {}, scene->environment_texels = {}, scene->environment_suns = {};
   if (scene->info.default_lights != 0)
     scene->info.background = {0, 0, 0};
   else if (has_light(*scene))

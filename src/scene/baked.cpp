@@ -109,8 +109,10 @@ void for_each_array(SceneType& scene, Visit visit) {
   visit("framings", scene.framings);
   visit("glass_maps", scene.glass_maps);
   visit("iridescences", scene.iridescences);
+  visit("camera_near", scene.camera_near);
+  visit("environment_suns", scene.environment_suns);
 }
-constexpr std::uint32_t kArrayCount = 49;
+constexpr std::uint32_t kArrayCount = 51;
 constexpr std::uint32_t kSectionCount = 1 + kArrayCount;  // kind 0 is SceneInfo
 
 constexpr std::uint64_t aligned(std::uint64_t offset) {

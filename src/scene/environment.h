@@ -20,6 +20,15 @@ struct EnvironmentInfo {
   Vec3 irradiance[9];
 };
 
+// A sun: a directional light of the scene that shines from a disc. The map may show it, too; what exceeds its
+// surroundings there lights surfaces as this light alone, and the maps for glossy lobes and the coefficients lack it.
+struct EnvironmentSun {
+  std::uint32_t light = 0;  // index of the light; it travels away from the disc's middle
+  float radius = 0;         // of the disc, radians
+  float cos_shown = 2;      // cosine of the angle around the disc within which the map shows it; 2: it does not
+  float surroundings = 0;   // luminance to which texels there are dimmed for all other purposes
+};
+
 // The maps follow each other from the first, rows of their second coordinate (z), texels of the first (x).
 constexpr int kGlossLevelCount = 6;
 constexpr float kGlossRoughness[kGlossLevelCount] = {0.1f, 0.25f, 0.4f, 0.6f, 0.8f, 1.0f};  // √α

@@ -393,8 +393,10 @@ struct Scene {
   Array<const Sheen> sheens;                     // one per material, or empty
   // One for each animation and one at time 0; or one; or none: measured at the start if needed.
   Array<const Framing> framings;
-  Array<const GlassMap> glass_maps;       // one per material, or empty
-  Array<const Iridescence> iridescences;  // likewise
+  Array<const GlassMap> glass_maps;              // one per material, or empty
+  Array<const Iridescence> iridescences;         // likewise
+  Array<const float> camera_near;                // near planes' distances, one per camera; or none: all 0
+  Array<const EnvironmentSun> environment_suns;  // of the environment, or none
 };
 
 inline bool is_animated(const Scene& scene) {

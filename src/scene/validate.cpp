@@ -232,6 +232,13 @@ Status validate_materials(const Scene& scene) {
 Status validate_lights_and_cameras(const Scene& scene) {
   for (std::uint32_t i = 0; i < scene.lights.count; ++i) RETURN_IF_ERROR(validate_light(scene, i));
   for (std::uint32_t i = 0; i < scene.cameras.count; ++i) RETURN_IF_ERROR(validate_camera(scene, i));
+  if (scene.camera_near.count && scene.camera_near.count != scene.cameras.count)
+    return failure("%u camera_near for %u cameras: there must be one for each, or none", scene.camera_near.count,
+                   scene.cameras.count);
+  for (std::uint32_t i = 0; i < scene.camera_near.count; ++i) {
+    const FieldRange distance[] = {{"distance", scene.camera_near[i], 0, kCoordinateMax}};
+    RETURN_IF_ERROR(check_fields("camera_near", i, distance));
+  }
   return success();
 }
 

@@ -19,9 +19,27 @@ Status validate_sizes(const Scene& scene, const EnvironmentInfo& info) {
   return success();
 }
 
+Status validate_suns(const Scene& scene) {
+  if (scene.environment_suns.count > 0 && scene.environment_info.empty())
+    return failure("%u environment_suns, but no environment_info", scene.environment_suns.count);
+  if (scene.environment_suns.empty()) return success();
+  if (scene.environment_suns.count != 1)
+    return failure("%u environment_suns: there must be one or none", scene.environment_suns.count);
+  const EnvironmentSun& sun = scene.environment_suns[0];
+  if (sun.light >= scene.lights.count || scene.lights[sun.light].kind != LightKind::directional)
+    return failure("environment_suns[0] is light %u: it must be a directional light", sun.light);
+  const FieldRange fields[] = {
+      {"radius", sun.radius, 0, kSunRadiusMax},
+      {"cos_shown", sun.cos_shown, 0, 2},
+      {"surroundings", sun.surroundings, 0, kRadianceMax},
+  };
+  return check_fields("environment_suns", 0, fields);
+}
+
 }  // namespace
 
 Status validate_environment(const Scene& scene) {
+  RETURN_IF_ERROR(validate_suns(scene));
   if (scene.environment_info.empty() && scene.environment_texels.empty()) return success();
   if (scene.environment_info.count != 1)
     return failure("%u environment_info: there must be one or none", scene.environment_info.count);

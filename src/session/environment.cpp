@@ -48,6 +48,9 @@ Status set_environment(const std::string& name, Scene* scene, EnvironmentMemory*
   memory->lights.insert(memory->lights.end(), read.lights.begin(), read.lights.end());
   scene->environment_info = {memory->info.data(), 1};
   scene->environment_texels = {memory->texels.data(), static_cast<std::uint32_t>(memory->texels.size())};
+  for (EnvironmentSun& sun : read.suns) sun.light += scene->lights.count;
+  memory->suns = read.suns;
+  scene->environment_suns = {memory->suns.data(), static_cast<std::uint32_t>(memory->suns.size())};
   scene->lights = {memory->lights.data(), static_cast<std::uint32_t>(memory->lights.size())};
   scene->info.background = read.mean;
   scene->info.ambient = {0, 0, 0};
@@ -75,7 +78,7 @@ Status set_environment_if_requested(const std::string& name, Renderer* renderer,
   RETURN_IF_ERROR(set_environment(name, scene, &memory));
   if (!memory.file.empty()) source->files.push_back(memory.file);
   const std::size_t bytes = arena_need<EnvironmentInfo>(1) + arena_need<std::uint32_t>(memory.texels.size()) +
-                            arena_need<Light>(memory.lights.size());
+                            arena_need<Light>(memory.lights.size()) + arena_need<EnvironmentSun>(memory.suns.size());
   Arena* arena = &renderer->memory.scene;
   if (bytes > arena_free(*arena))
     return scene_too_large(name, arena->used + bytes, renderer->settings.memory_bytes, source);
@@ -86,6 +89,7 @@ Status set_environment_if_requested(const std::string& name, Renderer* renderer,
     array.data = static_cast<decltype(array.data)>(copy);
   };
   keep(scene->environment_info), keep(scene->environment_texels), keep(scene->lights);
+  keep(scene->environment_suns);
   const ContentHash parts[2] = {content_hash(source->baked, source->baked_bytes),
                                 content_hash(scene->environment_texels.data, scene->environment_texels.bytes())};
   source->environment = content_hash(parts, sizeof parts);

@@ -12,6 +12,7 @@ struct EnvironmentMemory {
   std::vector<EnvironmentInfo> info;
   std::vector<std::uint32_t> texels;
   std::vector<Light> lights;
+  std::vector<EnvironmentSun> suns;
   std::string file;  // it was read from; empty: none
 };
 

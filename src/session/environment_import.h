@@ -9,14 +9,15 @@
 
 namespace pocketray {
 
-// An environment for a scene, with the light that belongs to it: a sky's sun.
+// An environment for a scene, with the light that belongs to it: its sun.
 struct ImportedEnvironment {
   EnvironmentInfo info;
   std::vector<std::uint32_t> texels;
   Vec3 mean;  // radiance
   std::vector<Light> lights;
-  std::string file;        // file that was read; empty: none
-  bool is_studio = false;  // lights the scene together with default lights
+  std::vector<EnvironmentSun> suns;  // at most one, with its index in `lights`
+  std::string file;                  // file that was read; empty: none
+  bool is_studio = false;            // lights the scene together with default lights
 };
 
 // Reads "sky", "sky:ELEVATION[,TURBIDITY]", "studio" or a file: Radiance RGBE (.hdr), PNG or JPEG, equirectangular,

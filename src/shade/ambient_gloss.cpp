@@ -75,8 +75,8 @@ void find_surroundings(FrameData* frame) {
   if (!has(kAllEffects, Effect::environment) ||
       !environment_lights(*frame->scene, frame->mask, frame->settings.indirect))
     return;
-  frame->kernels.surroundings = frame->kernels.first_surroundings = environment_light<true>;
-  if (has(frame->mask, Effect::environment_shadow)) frame->kernels.first_surroundings = environment_light<false>;
+  frame->kernels.surroundings = frame->kernels.first_surroundings =
+      has(frame->mask, Effect::environment_shadow) ? environment_light<false> : environment_light<true>;
 }
 
 void add_surroundings(FrameData* frame) {
@@ -86,10 +86,10 @@ void add_surroundings(FrameData* frame) {
   frame->kernels.plain_first_surface = frame->kernels.first_surface;
   if (frame->kernels.surroundings == even_light)
     put_in_front<even_light, even_light>(frame);
-  else if (frame->kernels.first_surroundings == environment_light<true>)
+  else if (frame->kernels.surroundings == environment_light<true>)
     put_in_front<environment_light<true>, environment_light<true>>(frame);
   else
-    put_in_front<environment_light<true>, environment_light<false>>(frame);
+    put_in_front<environment_light<false>, environment_light<false>>(frame);
 }
 
 }  // namespace pocketray

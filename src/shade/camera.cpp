@@ -39,7 +39,39 @@ Status make_camera_rays(const Camera& camera, std::uint32_t width, std::uint32_t
   rays->right = right * (half_height * (static_cast<float>(width) / static_cast<float>(height)));
   rays->width = static_cast<float>(width);
   rays->height = static_cast<float>(height);
+  rays->near_distance = 0;
+  rays->has_one_origin = !rays->orthographic;
   return success();
+}
+
+void set_near_plane(float distance, Array<const Vec3> positions, Array<const Triangle> triangles, CameraRays* rays) {
+  CHECK(rays != nullptr && distance >= 0);
+  rays->near_distance = 0;
+  rays->has_one_origin = !rays->orthographic;
+  if (!(distance > 0)) return;
+  // Rays reach the plane in a pyramid around the eye, or in a box.
+  const float stretch = rays->orthographic ? 1 : distance;
+  Box before = empty_box();
+  for (float x : {-1.0f, 1.0f})
+    for (float y : {-1.0f, 1.0f}) {
+      const Vec3 aside = (rays->right * x + rays->up * y) * stretch;
+      before = merge(before, rays->orthographic ? rays->eye + aside : rays->eye);
+      before = merge(before, rays->eye + aside + rays->forward * distance);
+    }
+  for (const Triangle& t : triangles) {
+    Box bounds = empty_box();
+    for (std::uint32_t v : t.vertices()) bounds = merge(bounds, positions[v]);
+    if (!overlaps(before, bounds)) continue;
+    bool is_behind = true, is_beyond = true;
+    for (std::uint32_t v : t.vertices()) {
+      const float depth = dot(positions[v] - rays->eye, rays->forward);
+      is_behind &= depth <= 0, is_beyond &= depth >= distance;
+    }
+    if (is_behind || is_beyond) continue;
+    rays->near_distance = distance;
+    rays->has_one_origin = false;
+    return;
+  }
 }
 
 bool place_in_picture(const CameraRays& c, const Vec3& point, Vec2* place) {

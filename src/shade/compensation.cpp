@@ -176,7 +176,7 @@ void add_compensation(const FrameData& frame, const InterleavedPoints& points, T
     const Surface& s = *points.surface[i];
     CompensationPath path = {s.point, kNoPathLight, kNoPathLight};
     if (is_lacking && !is_zero(s.diffuse)) {
-      const std::uint32_t place = points.place[i];
+      const std::uint32_t place = place_of(points.place[i]);
       const Vec3 light_lacking = CompensationRays{frame, lights, stats, rays, place, &path}.from(
           s, about_normal(s.normal, compensation_direction(place)));
       light[i].lit += light_lacking * (1.0f / kPatternPixels);

@@ -121,7 +121,7 @@ std::uint32_t samples_together(const FrameData& frame) {
   return frame.lights.sample_points.count > 0 ? 1 : frame.settings.edge_samples;
 }
 
-bool traces_packets(const FrameData& frame) { return !frame.geometry.ray_by_ray && !frame.view.camera.orthographic; }
+bool traces_packets(const FrameData& frame) { return !frame.geometry.ray_by_ray && frame.view.camera.has_one_origin; }
 
 void find_hits(Tracer* tracer, const SampleRange& samples, EdgePixels* pixels) {
   CHECK(tracer->frame != nullptr && pixels != nullptr);
@@ -204,6 +204,7 @@ void take_tile(const OpenWindow& window, std::uint32_t left, std::uint32_t top, 
       if (keeps_hits) keep_first_hit(window.tracer, 1, column, row, {0, 0, 0, kNotTraced});
       continue;
     }
+    CHECK_LT(pixels->count, kPacketMax);
     pixels->column[pixels->count] = static_cast<std::uint16_t>(column);
     pixels->row[pixels->count++] = static_cast<std::uint16_t>(row);
     if ((pixels->count + 1) * together > kPacketMax) add_samples(window.tracer, pixels, image);

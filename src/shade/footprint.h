@@ -19,7 +19,7 @@ inline PixelCone pixel_cone(const CameraRays& camera, std::uint32_t sample_count
   CHECK(sample_count >= 1 && sample_count <= kSampleCountMax);
   CHECK(camera.height >= 1);
   const float side = 2 * length(camera.up) / (camera.height * std::sqrt(static_cast<float>(sample_count)));
-  return camera.orthographic ? PixelCone{side, 0} : PixelCone{0, side};
+  return camera.orthographic ? PixelCone{side, 0} : PixelCone{side * camera.near_distance, side};
 }
 
 // Area that the cone covers in texture coordinates, where a ray of unit direction meets the triangle at the distance t

@@ -17,7 +17,8 @@ struct Lights {
   Array<const LightPoint> sample_points;  // as many for each sample that has its own, see sample_points.h
   LightRun runs[4];
   int run_count = 0;
-  LightTree tree = {};  // set with Effect::source_selection
+  std::uint32_t sun_begin = 0, sun_end = 0;  // points of the sun that the environment's map shows, too
+  LightTree tree = {};                       // set with Effect::source_selection
   PointGroups point_groups = {};
   Array<const LightPolygon> polygons;  // the polygons that LightRun::polygons points into
 };

@@ -24,7 +24,7 @@ Vec3 virtual_light_at(Tracer* tracer, const Surface& s) {
   InterleavedLight light[kPatternPixels], sum = {{0, 0, 0}, {0, 0, 0}, 0};
   kVirtualLightSource.gather(frame, {kPatternPixels, surface, place}, &tracer->stats,
                              &tracer->rays[static_cast<int>(RayKind::shadow)], light);
-  for (const InterleavedLight& l : light) sum.lit += l.lit, sum.open += l.open, sum.pixel_count += l.pixel_count;
+  for (const InterleavedLight& l : light) add(l, &sum);
   return kVirtualLightSource.irradiance(frame, s.point, s.normal, sum, false);
 }
 

@@ -55,7 +55,7 @@ inline float random_place(const SurfacePlace& hit) {
 //   tolerance: neighbouring sources form groups, see each_group()
 //   arrives(index, surface, &light): false if the surface faces away from the source
 //   ray(index, surface, origin): the shadow ray to it from the surface's safe origin
-//   of_place(place): the sources of a place in the pattern, with their count and, by [], indices
+//   of_place(place): the sources of a pixel by its source_place(), with their count and, by [], indices
 // Finds which of the sources `indices` light the surface.
 template <class Source, class Indices, std::uint32_t capacity>
 void find_sources(const Source& source, const Surface& surface, const Indices& indices, SentLights<capacity>* rays) {

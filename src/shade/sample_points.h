@@ -1,6 +1,7 @@
 // Light points of a pixel's samples. Each sample has points of its own on area lights, so that 4 samples of 4 points
 // see a penumbra as 16 points do. The centre of a pixel with samples at edges has the points of pixels without.
 #pragma once
+#include "base/check.h"
 #include "shade/frame_data.h"
 #include "shade/tracer.h"
 
@@ -23,7 +24,9 @@ inline const LightPoint* points_of_sample(const FrameData& frame, std::uint32_t 
                                           Array<const LightPoint> sample_points) {
   const std::uint32_t centres = frame.settings.samples_per_pixel == 1;
   if (frame.lights.sample_points.empty() || sample < centres) return points.data;
-  return &sample_points[(sample - centres) * frame.lights.points.count];
+  const std::uint32_t begin = (sample - centres) * frame.lights.points.count;
+  CHECK_LT(begin, sample_points.count);
+  return &sample_points[begin];
 }
 inline const LightPoint* points_of_sample(const FrameData& frame, std::uint32_t sample) {
   return points_of_sample(frame, sample, frame.lights.points, frame.lights.sample_points);

@@ -149,7 +149,7 @@ void trace_one(Tracer* tracer, const Doubtful& pixels, std::uint32_t i, const Pi
 void trace_doubtful(Tracer* tracer, const Doubtful& pixels, const PixelRows& image) {
   const FrameData& frame = *tracer->frame;
   const Tile& tile = pixels.tile;
-  const bool has_packets = !frame.geometry.ray_by_ray && !frame.view.camera.orthographic;
+  const bool has_packets = !frame.geometry.ray_by_ray && frame.view.camera.has_one_origin;
   if (frame.settings.samples_per_pixel == 1) {
     if (has_packets && tile.count >= kCameraRaysMin) return trace_together(tracer, pixels, image);
     for (std::uint32_t i = 0; i < tile.count; ++i) trace_one(tracer, pixels, i, image);

@@ -12,6 +12,7 @@
 #include "shade/direct.h"
 #include "shade/film.h"
 #include "shade/instances.h"
+#include "shade/interleaved.h"
 #include "shade/material_maps.h"
 #include "shade/rough_glass.h"
 #include "shade/selected_light.h"
@@ -285,7 +286,7 @@ Vec3 shade(Tracer* tracer, const Ray& ray, const Surface& s, const Contact* cont
 // Adds tile lighting to a secondary hit.
 template <EffectMask mask>
 void add_later_light(Tracer* tracer, const Path<mask>& path, Surface* s) {
-  if constexpr (has(kAllEffects, Effect::instant_radiosity) && (mask & kGoesOn) != 0)
+  if constexpr ((kInterleavedEffects & kEffectsBuilt) != 0 && (mask & kGoesOn) != 0)
     if (tracer->frame->kernels.add_later_light) tracer->frame->kernels.add_later_light(tracer, path.weight, s);
 }
 

@@ -34,7 +34,7 @@ Vec3 pixel_aov(Tracer* tracer, std::uint32_t column, std::uint32_t row, Aov aov)
   Surface s;
   float passed;
   if (!visible_surface(tracer, &ray, &hit, &s, &passed)) return {0, 0, 0};
-  if (aov == Aov::depth) return same(passed + hit.t);
+  if (aov == Aov::depth) return same(near_part(frame.view.camera, ray.direction) + passed + hit.t);
   if (aov == Aov::position) return in_model(*frame.scene, s.point);
   return aov == Aov::triangle ? same(static_cast<float>(hit.triangle + 1)) : s.normal;
 }
@@ -132,7 +132,7 @@ void trace_spans(Tracer* tracer, const Span* spans, std::uint32_t span_count, Ao
     for (std::uint32_t i = 0; i < span_count; ++i) trace_blocks(tracer, trace, spans[i], pitch, rows);
     return;
   }
-  if (aov != Aov::none || (frame.view.camera.orthographic && !trace)) {
+  if (aov != Aov::none || (!frame.view.camera.has_one_origin && !trace)) {
     for (std::uint32_t i = 0; i < span_count; ++i) trace_span(tracer, spans[i], pitch, aov, rows);
     return;
   }

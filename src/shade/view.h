@@ -9,7 +9,9 @@ namespace pocketray {
 struct CameraRays {
   Vec3 eye, forward, right, up;  // right and up span half the image at distance 1 (perspective) or in scene units
   float width, height;           // pixels
+  float near_distance = 0;       // rays begin on the plane at this distance along `forward`
   bool orthographic;
+  bool has_one_origin = true;  // all rays begin at the eye: a perspective camera without a near plane
 };
 
 // Width of a pixel's cone at the eye, and its growth per distance; see footprint.h.

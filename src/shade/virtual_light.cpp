@@ -25,7 +25,8 @@ struct VirtualSource {
   float geometry_max;
   float tolerance;
 
-  ListedIndices of_place(std::uint32_t place) const {
+  ListedIndices of_place(std::uint32_t source_place) const {
+    const std::uint32_t place = place_of(source_place);
     const std::uint16_t* first = &lights.first_of_place[place];
     return {lights.of_place + first[0], static_cast<std::uint32_t>(first[1] - first[0])};
   }
@@ -54,9 +55,10 @@ std::uint32_t place_in_pattern(const FrameData& frame, std::uint32_t index) {
   return virtual_lights_of(frame.indirect)->light[index].place;
 }
 
-std::uint32_t list_rays(const FrameData& frame, const Surface& surface, std::uint32_t place_in_pattern,
-                        SourceRay* rays) {
-  return has(frame.mask, Effect::shadow) ? list_source_rays(source_of(frame), surface, place_in_pattern, rays) : 0;
+std::uint32_t group(const FrameData&) { return 1; }
+
+std::uint32_t list_rays(const FrameData& frame, const Surface& surface, std::uint32_t source_place, SourceRay* rays) {
+  return has(frame.mask, Effect::shadow) ? list_source_rays(source_of(frame), surface, source_place, rays) : 0;
 }
 
 void gather(const FrameData& frame, const InterleavedPoints& points, TraceStats* stats, std::uint64_t* rays,
@@ -69,8 +71,8 @@ void gather(const FrameData& frame, const InterleavedPoints& points, TraceStats*
 Vec3 irradiance(const FrameData& frame, const Vec3& point, const Vec3& normal, const InterleavedLight& sum,
                 bool are_few) {
   const VirtualLights& lights = *virtual_lights_of(frame.indirect);
-  CHECK_GT(sum.pixel_count, 0u);
-  Vec3 result = sum.lit * (static_cast<float>(kPatternPixels) / static_cast<float>(sum.pixel_count));
+  CHECK_GT(sum.pixel_count, 0.0f);
+  Vec3 result = sum.lit * (static_cast<float>(kPatternPixels) / sum.pixel_count);
   if (are_few) {  // all lights, by the mean visibility of the traced ones, and compensated like them
     result = virtual_irradiance(lights, lights.first_geometry_max, point, normal);
     for (int c = 0; c < 3; ++c) result[c] *= sum.open[c] > 0 ? sum.lit[c] / sum.open[c] : 1;
@@ -105,7 +107,7 @@ void add_later_virtual_light(Tracer* tracer, const Vec3& weight, Surface* surfac
   surface->glow += s.diffuse * (lit * (1 / kPiF));
 }
 
-const InterleavedSource kVirtualLightSource = {Effect::instant_radiosity, false,     false,  count,     place,
+const InterleavedSource kVirtualLightSource = {Effect::instant_radiosity, false,     count,  group,     place,
                                                place_in_pattern,          list_rays, gather, irradiance};
 
 }  // namespace pocketray

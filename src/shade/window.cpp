@@ -13,7 +13,7 @@ void trace_pixels(const OpenWindow& window, Tile* tile) {
   Tracer* tracer = window.tracer;
   const FrameData& frame = *tracer->frame;
   CHECK_LE(tile->count, kPacketMax);
-  if (tile->count >= kPacketRaysMin && !frame.geometry.ray_by_ray && !frame.view.camera.orthographic) {
+  if (tile->count >= kPacketRaysMin && !frame.geometry.ray_by_ray && frame.view.camera.has_one_origin) {
     trace_tile(tracer, *tile, window.rows);
   } else {
     for (std::uint32_t i = 0; i < tile->count; ++i)

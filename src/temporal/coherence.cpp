@@ -263,7 +263,11 @@ void add_around_given(Coherence* c, std::uint32_t before, std::uint32_t after) {
 void spread_changes(Coherence* c) {
   const EffectMask mask = c->search.frame->mask;
   if (c->given.empty()) return;
-  if (is_interleaved(mask)) add_around_given(c, kTakenAfter, kTakenBefore);  // the pixels that take light from it
+  // The pixels that take light from it.
+  if (has(mask, Effect::environment_shadow))
+    add_around_given(c, FarReach::kAfter, FarReach::kBefore);
+  else if (is_interleaved(mask))
+    add_around_given(c, NearReach::kAfter, NearReach::kBefore);
   if (!has(mask, Effect::edge_sampling)) return;
   for (std::uint32_t tile = 0; tile < c->given.count; ++tile) c->given[tile] |= c->changed[tile];
   add_around_given(c, 1, 1);

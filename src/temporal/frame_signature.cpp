@@ -9,7 +9,7 @@ namespace {
 
 bool same_camera(const CameraRays& a, const CameraRays& b) {
   return a.eye == b.eye && a.forward == b.forward && a.right == b.right && a.up == b.up && a.width == b.width &&
-         a.height == b.height && a.orthographic == b.orthographic;
+         a.height == b.height && a.near_distance == b.near_distance && a.orthographic == b.orthographic;
 }
 
 bool same_media(const MediumStack& a, const MediumStack& b) {

@@ -16,8 +16,9 @@ Beam camera_beam(const CameraRays& c, const PixelRect& pixels, float t_max) {
     float y = static_cast<float>(pixels.row + (corner & 2 ? pixels.height : 0));
     float sx = 2 * x / c.width - 1, sy = 1 - 2 * y / c.height;
     Vec3 aside = c.right * sx + c.up * sy;
-    origins = merge(origins, c.orthographic ? c.eye + aside : c.eye);
-    directions = merge(directions, c.orthographic ? c.forward : c.forward + aside);
+    const Vec3 way = c.orthographic ? c.forward : c.forward + aside;
+    origins = merge(origins, (c.orthographic ? c.eye + aside : c.eye) + way * c.near_distance);
+    directions = merge(directions, way);
   }
   // These directions are as long as camera_ray()'s, or longer.
   return beam_along(origins, directions, t_max);
@@ -72,7 +73,7 @@ void find_changed_hits(TileSearch* t, float t_max) {
   Hit found[kPacketMax];
   std::uint8_t seen[kPacketMax];
   const std::uint32_t count = list_seen(t, t_max, seen);
-  if (t->frame.view.camera.orthographic) {
+  if (!t->frame.view.camera.has_one_origin) {
     for (std::uint32_t k = 0; k < count; ++k)
       kBvhAccel.closest(t->search.moving->now, sample_ray(t->frame, p, seen[k], t->offset), nullptr, &found[k],
                         t->stats);

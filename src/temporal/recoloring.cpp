@@ -197,11 +197,11 @@ void find_opened(TileOfPixels* tile, const TileHits& hits, const InterleavedSour
     };
     if (!is_stopped_from(hits.points)) continue;
     for_each_hit(*tile, [&](std::uint32_t x, std::uint32_t y, std::uint32_t sample, const Hit& hit, std::uint64_t bit) {
-      const std::uint32_t in_pattern = morton_place(x % kPatternSide, y % kPatternSide);
-      if (hit.triangle == kNoTriangle || in_pattern != source.place_in_pattern(frame, k)) return;
+      const std::uint32_t pixel_place = source_place(x, y);
+      if (hit.triangle == kNoTriangle || place_of(pixel_place) != source.place_in_pattern(frame, k)) return;
       const Vec3 point = point_of(frame, hit);
       if (!is_stopped_from({point, point})) return;
-      const SourceRay* end = ray + source.list_rays(frame, surface_at(frame, x, y, sample, hit), in_pattern, ray);
+      const SourceRay* end = ray + source.list_rays(frame, surface_at(frame, x, y, sample, hit), pixel_place, ray);
       if (std::any_of(static_cast<const SourceRay*>(ray), end, [&](const SourceRay& r) { return r.source == k; }))
         tile->found |= bit, tile->given |= bit;
     });

@@ -1,4 +1,7 @@
 // Finds interleaved sources (virtual and distant lights) that reach first hits where they did not, or no longer.
+#include <algorithm>
+
+#include "base/check.h"
 #include "temporal/shadow_rays.h"
 
 namespace pocketray {
@@ -10,6 +13,20 @@ Beam source_beam(const InterleavedSource& source, const Vec3& place, const Box& 
   return {from.low, from.high, place - from.low, place - from.high, 1};
 }
 
+namespace {
+
+// The beam to several distant sources.
+Beam group_beam(const FrameData& frame, const InterleavedSource& source, std::uint32_t begin, std::uint32_t end,
+                const TileHits& hits) {
+  CHECK(source.is_distant);
+  const Vec3 around = {hits.room, hits.room, hits.room};
+  Box directions = empty_box();
+  for (std::uint32_t i = begin; i < end; ++i) directions = merge(directions, source.place(frame, i));
+  return beam_along({hits.points.low - around, hits.points.high + around}, directions, __builtin_inff());
+}
+
+}  // namespace
+
 SourceSets suspect_sources(const ChangeSearch& search, const TileHits& hits, const SourceSets* among) {
   const FrameData& frame = *search.frame;
   SourceSets suspects;
@@ -17,11 +34,15 @@ SourceSets suspect_sources(const ChangeSearch& search, const TileHits& hits, con
   for (int kind = 0; kind < kInterleavedSourceCount; ++kind) {
     const InterleavedSource& source = *kInterleavedSources[kind];
     if (!has(frame.mask, source.effect) || (among && !among->of[kind].places)) continue;
-    const std::uint32_t count = source.count(frame);
-    for (std::uint32_t i = 0; i < count; ++i) {
-      if (among && !among->of[kind].has(i)) continue;
-      if (meets_change(*search.moving, source_beam(source, source.place(frame, i), hits.points, hits.room)))
-        suspects.of[kind].add(i, source.place_in_pattern(frame, i));
+    const std::uint32_t count = source.count(frame), group = source.group(frame);
+    for (std::uint32_t begin = 0; begin < count; begin += group) {
+      const std::uint32_t end = std::min(begin + group, count);
+      if (group > 1 && !meets_change(*search.moving, group_beam(frame, source, begin, end, hits))) continue;
+      for (std::uint32_t i = begin; i < end; ++i) {
+        if (among && !among->of[kind].has(i)) continue;
+        if (meets_change(*search.moving, source_beam(source, source.place(frame, i), hits.points, hits.room)))
+          suspects.of[kind].add(i, source.place_in_pattern(frame, i));
+      }
     }
   }
   return suspects;
@@ -61,8 +82,8 @@ void find_other_light(TileSearch* t, const SourceSets& suspects) {
     const SourceSet& set = suspects.of[kind];
     for (std::uint32_t k = 0; set.places && k < t->receiver_count; ++k) {
       const std::uint32_t i = t->receiver[k];
-      const std::uint32_t place = morton_place(t->pixels.x[i] % kPatternSide, t->pixels.y[i] % kPatternSide);
-      if (!(set.places >> place & 1) || t->given & bit_of(t->pixels, i)) continue;
+      const std::uint32_t place = source_place(t->pixels.x[i], t->pixels.y[i]);
+      if (!(set.places >> place_of(place) & 1) || t->given & bit_of(t->pixels, i)) continue;
       const std::uint32_t count = kInterleavedSources[kind]->list_rays(t->frame, surface_of(t, k), place, ray);
       for (std::uint32_t r = 0; r < count; ++r) {
         if (!set.has(ray[r].source)) continue;

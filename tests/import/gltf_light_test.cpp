@@ -2,6 +2,7 @@
 #include <cmath>
 #include <string>
 
+#include "desktop/import/reduce.h"
 #include "import/gltf_writer.h"
 #include "import/import_testing.h"
 
@@ -64,6 +65,29 @@ TEST_CASE("gltf_spot_cones_keep_a_soft_edge") {
   }
 }
 
+// Goal: a camera's near plane is kept where a triangle lies before it, or may come to lie there.
+TEST_CASE("near_planes_are_kept_where_they_cut") {
+  auto near_of = [](float distance, Projection projection, bool moves) {
+    SceneArrays arrays;
+    arrays.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+    arrays.triangles = {Triangle(0, 1, 2, 0)};
+    arrays.materials.resize(1);
+    Camera camera;
+    camera.eye = {0, 1, 5}, camera.target = {0, 1, 4}, camera.projection = projection;
+    if (moves) camera.node = 0, arrays.nodes.resize(1);
+    arrays.cameras = {camera};
+    arrays.camera_near = {distance};
+    reduce(&arrays);
+    return arrays.camera_near.empty() ? 0 : arrays.camera_near[0];
+  };
+  for (Projection projection : {Projection::perspective, Projection::orthographic}) {
+    CHECK(near_of(0.1f, projection, false) == 0);
+    CHECK(near_of(4.5f, projection, false) == 0);
+    CHECK(near_of(5.5f, projection, false) == 5.5f);
+    CHECK(near_of(0.1f, projection, true) == 0.1f);
+  }
+}
+
 // Goal: perspective and orthographic cameras stand where their node is; an invalid camera is skipped with a note.
 TEST_CASE("gltf_cameras_stand_where_their_node_is") {
   auto with_camera = [](const std::string& camera) {
@@ -81,6 +105,8 @@ TEST_CASE("gltf_cameras_stand_where_their_node_is") {
   REQUIRE(b.scene.cameras.count == 1);
   CHECK(b.scene.cameras[0].projection == Projection::orthographic);
   CHECK(b.scene.cameras[0].vertical_extent == 3);
+  REQUIRE(b.scene.camera_near.count == 1);
+  CHECK(b.scene.camera_near[0] == 0.1f);
   ImportedScene none =
       load_text(with_camera("{\"type\":\"perspective\",\"perspective\":{\"yfov\":3.2,\"znear\":0.1}}"));
   CHECK(none.scene.cameras.count == 0);

@@ -103,6 +103,47 @@ TEST_CASE("environment_reference_is_the_integral_over_directions") {
     }
 }
 
+// Goal: the sun that the map shows lights a floor once: as a directional light for the renderer and its model, from the
+// map in full transport. Method: the integral of the map over the hemisphere; a light that has what exceeds the sun's
+// surroundings.
+TEST_CASE("environment_sun_lights_once") {
+  const Vec3d middle = normalize(Vec3d{1, 2, 1});
+  auto map = [&](const Vec3d& d) {
+    const double light = dot(d, middle) > det_cos(radians(3)) ? 800.0 : 1.0;
+    return Vec3d{light, light, light};
+  };
+  const TestEnvironment environment(128, 4, {1, 1, 1}, [&](const Vec3d& d, int level) {
+    return level < 0 ? map(d) : Vec3d{1, 1, 1};
+  });
+  double sun_only = 0;
+  for (int i = 0; i < 128 * 128; ++i) {
+    const Vec3d p = from_octahedral(2 * (i % 128 + 0.5) / 128 - 1, 2 * (i / 128 + 0.5) / 128 - 1);
+    sun_only += (map(normalize(p)).y - 1) * 4.0 / (128 * 128) / std::pow(dot(p, p), 1.5);
+  }
+  GeneratedScene s;
+  add_floor(&s, white());
+  Light light;
+  light.kind = LightKind::directional, light.direction = to_float(-middle);
+  light.intensity = Vec3{1, 1, 1} * static_cast<float>(sun_only);
+  s.lights = {light};
+  s.bind();
+  environment.give(&s.scene);
+  const EnvironmentSun sun = {0, static_cast<float>(radians(3)), static_cast<float>(det_cos(radians(5))), 1};
+  s.scene.environment_suns = {&sun, 1};
+  const double expected = 1 + sun_only * middle.y / kPi;
+  CHECK(expected > 1.5);
+  for (std::uint32_t points : {1u, 8u}) {
+    Settings settings = small_settings();
+    settings.points_per_area_light = points;
+    const TestReference t(s.scene, settings);
+    const Vec3d way = normalize(Vec3d{0, -1, -1});
+    check_equal(estimate(t, Transport::physical, {0, 2, 2}, way, 40000), expected, 0.01);
+    check_equal(estimate(t, Transport::model, {0, 2, 2}, way, 40000), expected, 0.01);
+    CHECK(t.renderer->renderer.image[36].y == doctest::Approx(expected).epsilon(0.01));
+    CHECK(t.renderer->renderer.frame.lights.points.count == points);
+  }
+}
+
 // Goal: what stands between a surface and the environment shades it, in the renderer's model where shadows from the
 // environment are simulated. Method: a black lid above the floor; only light from beside it arrives.
 TEST_CASE("environment_reference_casts_shadows") {

@@ -124,7 +124,7 @@ TEST_CASE("server_frames_follow_every_setting") {
     if (row.wire_bytes == 0) continue;
     double usual = row.field.get(plain.settings);
     double coarse = row.sweep.values[row.sweep.values[0] == usual ? row.sweep.count / 2 : 0];
-    if (row.effects == bit(Effect::instant_radiosity)) continue;  // below
+    if (row.effects == bit(Effect::instant_radiosity)) continue;   // below
     const bool shows = row.name != std::string("reconstruction");  // the scene stores no radiosity
     check_and_back([&](FrameRequest* r) { row.field.set(&r->settings, coarse); }, shows);
   }

@@ -105,6 +105,7 @@ void FullScene::bind() {
   scene.glass_maps = view(glass_maps), scene.iridescences = view(iridescences);
   scene.sheens = view(sheens), scene.clear_coats = view(clear_coats), scene.default_view = view(default_view);
   scene.framings = view(framings);
+  scene.camera_near = view(camera_near), scene.environment_suns = view(environment_suns);
   scene.animation_labels = view(animation_labels), scene.node_visible = view(node_visible);
   scene.origin = view(origin);
 }
@@ -122,6 +123,7 @@ void make_full_scene(std::uint64_t seed, std::uint32_t vertex_count, std::uint32
   Camera still, flying;
   flying.node = 1, flying.projection = Projection::orthographic;
   full->cameras = {still, flying};
+  full->camera_near = {0, 0.25f};
   full->radiosity_info = {{{3, 3, 3}}};
   full->radiosity_triangles.assign(full->triangles.size(), kRadiosityGridBit);
   full->radiosity_triangles[1] = 0;
@@ -138,6 +140,7 @@ void make_full_scene(std::uint64_t seed, std::uint32_t vertex_count, std::uint32
   environment.scale = 0.5f, environment.side = environment.gloss_side = 4, environment.radiance_max = {9, 9, 9};
   for (Vec3& coefficient : environment.irradiance) coefficient = color(&rng);
   full->environment_info = {environment};
+  full->environment_suns = {{2, 0.005f, 0.75f, 4}};
   for (std::uint32_t i = 0; i < environment_texel_count(4, 4); ++i)
     full->environment_texels.push_back(to_environment_texel(to_double(color(&rng)) * 9.0));
   full->grains.resize(full->materials.size());

@@ -44,6 +44,8 @@ struct FullScene {
   std::vector<pocketray::Iridescence> iridescences;
   std::vector<pocketray::DefaultView> default_view;
   std::vector<pocketray::Framing> framings;
+  std::vector<float> camera_near;
+  std::vector<pocketray::EnvironmentSun> environment_suns;
   std::vector<pocketray::AnimationLabel> animation_labels;
   std::vector<std::uint8_t> node_visible;
   std::vector<pocketray::SceneOrigin> origin;

@@ -227,7 +227,7 @@ TEST_CASE("edges_take_shared_light") {
   const double plain = mean_error(render_picture(scene, settings), truth), error = mean_error(picture, truth);
   CAPTURE(plain);
   CAPTURE(error);
-  CHECK(plain > 0.005);
+  CHECK(plain > 0.003);
   CHECK(error < 0.8 * plain);
 }
 

@@ -24,7 +24,7 @@ Settings with_directions(std::uint32_t count, std::uint32_t width = 16, std::uin
 
 // Brighter above, with a bright spot.
 TestEnvironment sky() {
-  return TestEnvironment(32, 16, {0.5f, 0.6f, 0.7f}, [](const Vec3d& d, int) {
+  return TestEnvironment(32, 32, {0.5f, 0.6f, 0.7f}, [](const Vec3d& d, int) {
     return d.x > 0.9 ? Vec3d{20, 18, 15} : Vec3d{1 + d.y, 1.2 + d.y, 1.5 + d.y};
   });
 }
@@ -102,6 +102,54 @@ TEST_CASE("environment_shadow_leaves_open_surfaces_alone") {
   }
 }
 
+// Goal: surfaces seen in a mirror lie in these shadows. Method: a mirror above the point, which it hides little of; a
+// wall behind the point hides half of the sky in closed form, a closed box all of it.
+TEST_CASE("environment_shadow_is_seen_in_mirrors") {
+  const TestEnvironment even = even_environment({1, 1, 1});
+  Material mirror = matte(0);
+  mirror.mirror = {1, 1, 1};
+  auto seen_in_mirror = [&](Floor* floor) {
+    const std::uint32_t m = add_material(floor, mirror);
+    add_box(floor, {0.3f, 0.4f, 0.3f}, {0.34f, 0.44f, 0.34f}, m);  // its lower side
+    floor->cameras[0].eye = {0.32f, 0.1f, 0.32f}, floor->cameras[0].target = {0.321f, 0.4f, 0.322f};
+    floor->cameras[0].vertical_fov = 0.06f;
+    return seen(floor, even, with_directions(64));
+  };
+  Floor open(1000), walled(1000), closed(1);
+  CHECK(seen_in_mirror(&open).x == doctest::Approx(1).epsilon(0.03));
+  add_box(&walled, {-1000, 0, -1000}, {0.2f, 1e6f, 1000}, 0);
+  CHECK(seen_in_mirror(&walled).x == doctest::Approx(0.5).epsilon(0.06));
+  add_box(&closed, {-1, -1, -1}, {1, 1, 1}, 0);
+  CHECK(seen_in_mirror(&closed).x == 0);
+}
+
+// Goal: pixels on one surface take light from all lights of four patterns, each light once. Method: the share of these
+// that a square above hides, at several heights, where all pixels show one point.
+TEST_CASE("environment_shadow_takes_light_from_four_patterns") {
+  const TestEnvironment uneven = sky();
+  for (float height : {0.3f, 0.5f, 0.8f, 1.3f}) {
+    Floor covered(1000);
+    covered.add_square(height, 1);
+    covered.bind();
+    uneven.give(&covered.scene);
+    auto t = make_renderer(covered.scene, with_directions(16));
+    REQUIRE(render_frame(&t->renderer, 0).ok);
+    const EnvironmentLights& lights = *t->renderer.frame.environment_lights;
+    REQUIRE(lights.count == 64);
+    Vec3 lit = {0, 0, 0}, open = {0, 0, 0};
+    for (std::uint32_t i = 0; i < lights.count; ++i) {
+      const Vec3& d = lights.light[i].direction;
+      if (!(d.y > 0)) continue;
+      open += lights.light[i].irradiance * d.y;
+      const float reach = (height - 0.001f) / d.y;
+      if (std::fabs(d.x * reach) > 1 || std::fabs(d.z * reach) > 1) lit += lights.light[i].irradiance * d.y;
+    }
+    for (int c = 0; c < 3; ++c)
+      CHECK(t->renderer.image[8 * 16 + 8][c] ==
+            doctest::Approx(uneven.info.irradiance[0][c] * lit[c] / open[c]).epsilon(1e-4));
+  }
+}
+
 // Goal: holes and glass let the environment through. Method: a cover of each above a point, against an opaque one.
 TEST_CASE("environment_shadow_passes_holes_and_glass") {
   const TestEnvironment even = even_environment({1, 1, 1});
@@ -140,19 +188,20 @@ TEST_CASE("environment_lights_have_equal_shares") {
     CAPTURE(count);
     EnvironmentLights lights;
     place_environment_lights(scene, count, &lights);
-    REQUIRE(lights.count == count);
+    const std::uint32_t all = count * lights.variants;
+    REQUIRE(lights.count == all);
     Vec3d sum = {0, 0, 0};
     std::uint32_t in_spot = 0;
-    for (std::uint32_t i = 0; i < count; ++i) {
+    for (std::uint32_t i = 0; i < all; ++i) {
       const EnvironmentLight& light = lights.light[i];
       CHECK(static_cast<double>(length(light.direction)) == doctest::Approx(1).epsilon(1e-6));
       CHECK(luminance(to_double(light.irradiance)) / luminance(to_double(lights.light[0].irradiance)) ==
             doctest::Approx(1).epsilon(0.002));
       sum += to_double(light.direction), in_spot += light.direction.x > 0.9f;
     }
-    if (count < 64) continue;
-    for (int c = 0; c < 3; ++c) CHECK(sum[c] / count == doctest::Approx(moment[c] / total).epsilon(0.01));
-    CHECK(in_spot == doctest::Approx(count * spot / total).epsilon(0.05));
+    if (all < 64) continue;
+    for (int c = 0; c < 3; ++c) CHECK(sum[c] / all == doctest::Approx(moment[c] / total).epsilon(0.01));
+    CHECK(in_spot == doctest::Approx(all * spot / total).epsilon(0.05));
   }
   EnvironmentLights none;
   even_environment({0, 0, 0}).give(&scene);

@@ -21,6 +21,9 @@ Status decode_radiance(const std::vector<std::uint8_t>& bytes, RadiancePicture* 
 Status make_environment(std::uint32_t side, std::uint32_t grid, const std::function<Vec3d(const Vec3d&)>& radiance,
                         ImportedEnvironment* environment);
 constexpr std::uint32_t kGlossSide = 64;
+// As above. If enough light comes from a small disc, it becomes a directional light: the environment's sun.
+Status make_sunny_environment(std::uint32_t side, std::uint32_t grid,
+                              const std::function<Vec3d(const Vec3d&)>& radiance, ImportedEnvironment* environment);
 
 // The clear sky of [Preetham et al. 1999, "A practical analytic model for daylight", sec. 3 and app. A], in units of 30
 // kcd/m², so that a white surface in the sun is about display white. Below the horizon is uniform ground.

@@ -15,6 +15,7 @@ namespace pocketray {
 namespace {
 
 constexpr std::uint32_t kSkySide = 256, kStudioSide = 128, kFileSideMax = 512;
+constexpr float kSunRadius = static_cast<float>(radians(0.2665));  // seen from the earth, on average
 constexpr std::uint64_t kFileBytesMax = std::uint64_t(1) << 30;
 
 // Reads a number at *at and advances it.
@@ -46,6 +47,7 @@ Status read_sky(const std::string& name, ImportedEnvironment* environment) {
   Sky sky;
   RETURN_IF_ERROR(parse_sky(name, &sky));
   environment->lights = {sun_of(sky)};
+  environment->suns = {{0, kSunRadius, 2, 0}};
   return make_environment(
       kSkySide, 2, [&](const Vec3d& direction) { return sky_radiance(sky, direction); }, environment);
 }
@@ -121,7 +123,7 @@ Status read_environment(const std::string& name, ImportedEnvironment* environmen
     std::uint32_t side = 64;
     while (side < kFileSideMax && 2 * side < picture.width) side *= 2;
     while (picture.width > 4 * side) picture = halved(picture);
-    const Status status = make_environment(
+    const Status status = make_sunny_environment(
         side, 4, [&](const Vec3d& direction) { return picture_at(picture, direction); }, environment);
     return status.ok ? status : failure("%.300s %.200s", name.c_str(), status.message);
   } catch (const std::bad_alloc&) {

@@ -6,23 +6,17 @@
 #include "base/fmath.h"
 #include "base/limits.h"
 #include "desktop/import/environment.h"
+#include "desktop/import/environment_sun.h"
 
 namespace pocketray {
 namespace {
-
-// A map of means over texels, with the texels' solid angles and unit directions.
-struct Map {
-  std::uint32_t side;
-  std::vector<Vec3d> radiance, direction;
-  std::vector<double> solid_angle;
-};
 
 Vec3d place_in(std::uint32_t side, std::uint32_t column, std::uint32_t row, double s, double t) {
   return from_octahedral(2 * (column + s) / side - 1, 2 * (row + t) / side - 1);
 }
 
-Map empty_map(std::uint32_t side) {
-  Map map;
+EnvironmentMap empty_map(std::uint32_t side) {
+  EnvironmentMap map;
   map.side = side;
   const std::size_t count = std::size_t(side) * side;
   map.radiance.assign(count, {0, 0, 0}), map.solid_angle.assign(count, 0), map.direction.resize(count);
@@ -32,8 +26,9 @@ Map empty_map(std::uint32_t side) {
   return map;
 }
 
-Map sample_map(std::uint32_t side, std::uint32_t grid, const std::function<Vec3d(const Vec3d&)>& radiance) {
-  Map map = empty_map(side);
+EnvironmentMap sample_map(std::uint32_t side, std::uint32_t grid, const std::function<Vec3d(const Vec3d&)>& radiance) {
+  CHECK(side >= 4 && side <= kEnvironmentSideMax && (side & (side - 1)) == 0 && grid >= 1);
+  EnvironmentMap map = empty_map(side);
   for (std::size_t i = 0; i < map.radiance.size(); ++i) {
     const auto column = static_cast<std::uint32_t>(i % side), row = static_cast<std::uint32_t>(i / side);
     Vec3d sum = {0, 0, 0};
@@ -52,9 +47,9 @@ Map sample_map(std::uint32_t side, std::uint32_t grid, const std::function<Vec3d
 }
 
 // Halves the side until it is at most `side`.
-Map reduced(Map map, std::uint32_t side) {
+EnvironmentMap reduced(EnvironmentMap map, std::uint32_t side) {
   while (map.side > side) {
-    Map half = empty_map(map.side / 2);
+    EnvironmentMap half = empty_map(map.side / 2);
     for (std::size_t i = 0; i < map.radiance.size(); ++i) {
       const std::size_t to = i / map.side / 2 * half.side + i % map.side / 2;
       half.radiance[to] += map.radiance[i] * map.solid_angle[i], half.solid_angle[to] += map.solid_angle[i];
@@ -67,7 +62,7 @@ Map reduced(Map map, std::uint32_t side) {
 
 // A map with the means of its blocks of texels.
 struct Pyramid {
-  Map fine, coarse;
+  EnvironmentMap fine, coarse;
 };
 constexpr std::uint32_t kBlockSide = 4;
 // Cosines between a block and a lobe's axis: near the axis, where the lobe is steep, and where the horizon may cut the
@@ -80,7 +75,7 @@ struct LobeSum {
   double square;  // α²
   double weights = 0;
   Vec3d sum = {0, 0, 0};
-  void add(const Map& map, std::size_t texel, double cosine) {
+  void add(const EnvironmentMap& map, std::size_t texel, double cosine) {
     if (!(cosine > 0)) return;
     const double term = (1 + std::fmin(cosine, 1)) / 2 * (square - 1) + 1;
     const double weight = cosine / (term * term) * map.solid_angle[texel];
@@ -90,7 +85,7 @@ struct LobeSum {
 
 Vec3d lobe_mean(const Pyramid& map, const Vec3d& axis, double alpha) {
   LobeSum lobe = {alpha * alpha};
-  auto add = [&](const Map& of, std::size_t texel) { lobe.add(of, texel, dot(of.direction[texel], axis)); };
+  auto add = [&](const EnvironmentMap& of, std::size_t texel) { lobe.add(of, texel, dot(of.direction[texel], axis)); };
   if (map.coarse.radiance.empty())
     for (std::size_t i = 0; i < map.fine.radiance.size(); ++i) add(map.fine, i);
   for (std::size_t i = 0; i < map.coarse.radiance.size(); ++i) {
@@ -109,7 +104,7 @@ Vec3d lobe_mean(const Pyramid& map, const Vec3d& axis, double alpha) {
 
 // Irradiance / π by [Ramamoorthi & Hanrahan 2001] eqs. 3, 9 and 10, as a polynomial in the normal; the bands have
 // factors π, 2π/3 and π/4.
-void add_irradiance(const Map& map, EnvironmentInfo* info) {
+void add_irradiance(const EnvironmentMap& map, EnvironmentInfo* info) {
   constexpr double kNorm[9] = {0.25, 0.5, 0.5, 0.5, 15.0 / 16, 15.0 / 16, 15.0 / 16, 15.0 / 64, 5.0 / 64};
   Vec3d sum[9] = {};
   double all = 0;
@@ -125,7 +120,7 @@ void add_irradiance(const Map& map, EnvironmentInfo* info) {
 }
 
 // Chooses a scale so that stored texels use their range.
-Status choose_scale(const Map& map, EnvironmentInfo* info) {
+Status choose_scale(const EnvironmentMap& map, EnvironmentInfo* info) {
   double most = 0;
   for (const Vec3d& radiance : map.radiance) most = std::fmax(most, max_component(radiance));
   if (!(most <= static_cast<double>(kEnvironmentTexelMax * kEnvironmentScaleMax) / 2))
@@ -135,14 +130,9 @@ Status choose_scale(const Map& map, EnvironmentInfo* info) {
   return success();
 }
 
-}  // namespace
-
-Status make_environment(std::uint32_t side, std::uint32_t grid, const std::function<Vec3d(const Vec3d&)>& radiance,
-                        ImportedEnvironment* environment) {
-  CHECK(environment != nullptr && side >= 4 && side <= kEnvironmentSideMax && (side & (side - 1)) == 0 && grid >= 1);
-  const Map map = sample_map(side, grid, radiance);
+Status store(const EnvironmentMap& map, const EnvironmentMap& without_sun, ImportedEnvironment* environment) {
   EnvironmentInfo& info = environment->info;
-  info.side = side, info.gloss_side = std::min(side, kGlossSide);
+  info.side = map.side, info.gloss_side = std::min(map.side, kGlossSide);
   RETURN_IF_ERROR(choose_scale(map, &info));
   environment->texels.clear();
   info.radiance_max = {0, 0, 0};
@@ -152,9 +142,9 @@ Status make_environment(std::uint32_t side, std::uint32_t grid, const std::funct
     environment->texels.push_back(texel);
   };
   for (const Vec3d& color : map.radiance) store(color);
-  add_irradiance(map, &info);
+  add_irradiance(without_sun, &info);
   environment->mean = max(info.irradiance[0], Vec3{0, 0, 0});
-  Pyramid source = {reduced(map, 2 * kGlossSide), {}};
+  Pyramid source = {reduced(without_sun, 2 * kGlossSide), {}};
   if (source.fine.side == 2 * kGlossSide) source.coarse = reduced(source.fine, source.fine.side / kBlockSide);
   for (int level = 0; level < kGlossLevelCount; ++level) {
     const double roughness = static_cast<double>(kGlossRoughness[level]);
@@ -165,6 +155,24 @@ Status make_environment(std::uint32_t side, std::uint32_t grid, const std::funct
   }
   CHECK_EQ(environment->texels.size(), environment_texel_count(info.side, info.gloss_side));
   return success();
+}
+
+}  // namespace
+
+Status make_environment(std::uint32_t side, std::uint32_t grid, const std::function<Vec3d(const Vec3d&)>& radiance,
+                        ImportedEnvironment* environment) {
+  CHECK(environment != nullptr);
+  const EnvironmentMap map = sample_map(side, grid, radiance);
+  return store(map, map, environment);
+}
+
+Status make_sunny_environment(std::uint32_t side, std::uint32_t grid,
+                              const std::function<Vec3d(const Vec3d&)>& radiance, ImportedEnvironment* environment) {
+  CHECK(environment != nullptr);
+  const EnvironmentMap map = sample_map(side, grid, radiance);
+  EnvironmentMap without_sun = map;
+  take_sun(&without_sun, environment);
+  return store(map, without_sun, environment);
 }
 
 }  // namespace pocketray

@@ -77,6 +77,10 @@ void add_camera(GltfFile* file, int camera_index, int node_index) {
   }
   file->cameras[static_cast<std::size_t>(camera_index)].push_back(static_cast<std::uint32_t>(out.cameras.size()));
   out.cameras.push_back(camera);
+  const double near_distance = source.type == "orthographic" ? source.orthographic.znear : source.perspective.znear;
+  out.camera_near.resize(out.cameras.size());
+  if (near_distance > 0 && near_distance <= static_cast<double>(kCoordinateMax))
+    out.camera_near.back() = static_cast<float>(near_distance);
 }
 
 }  // namespace

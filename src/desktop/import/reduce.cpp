@@ -11,6 +11,7 @@
 #include "scene/invisible.h"
 #include "scene/metallic_roughness.h"
 #include "scene/texture_levels.h"
+#include "shade/camera.h"
 #include "shade/normal_map.h"
 
 namespace pocketray {
@@ -19,6 +20,9 @@ namespace {
 // Angle within which a normal from a file is that of its face. Chosen: normals in floats, turned by a node, err by
 // less, and radiance changes by a millionth of the light.
 constexpr double kNormalRounding = 0x1p-20;
+
+// A picture so many times as wide as high shows whatever cameras show before their near planes. Chosen.
+constexpr std::uint32_t kNearWidth = 8;
 
 // Calls visit(use) for every use of a texture.
 template <class Visit>
@@ -59,6 +63,7 @@ class Reducer {
   void reduce_glass();
   void reduce_animations();
   void reduce_lights();
+  void reduce_near_planes();
   void reduce_normals();
   void drop_unused_textures();
 
@@ -316,6 +321,23 @@ void Reducer::reduce_lights() {
   out_.lights.swap(kept);
 }
 
+// Near planes before which nothing lies; a camera or a triangle that moves may still get there.
+void Reducer::reduce_near_planes() {
+  out_.camera_near.resize(out_.cameras.size());
+  bool any = false;
+  for (std::uint32_t i = 0; i < out_.cameras.size(); ++i) {
+    float* distance = &out_.camera_near[i];
+    if (out_.cameras[i].node == kNone && out_.moving_meshes.empty() && out_.channels.empty()) {
+      CameraRays rays;
+      const bool is_valid = make_camera_rays(out_.cameras[i], kNearWidth, 1, &rays).ok;
+      if (is_valid) set_near_plane(*distance, scene_.positions, scene_.triangles, &rays);
+      if (!is_valid || rays.near_distance == 0) *distance = 0;
+    }
+    any |= *distance > 0;
+  }
+  if (!any) out_.camera_near.clear();
+}
+
 // Returns whether resting triangles have their own normals at their vertices, to the rounding of those in files.
 bool has_normals_of_faces(const Scene& scene) {
   if (scene.moving_meshes.count > 0) return false;
@@ -390,6 +412,7 @@ void Reducer::reduce_all() {
   reduce_animations();
   reduce_glass();
   reduce_lights();
+  reduce_near_planes();
   reduce_normals();
   drop_unused_textures();
   drop_empty_maps(&out_);

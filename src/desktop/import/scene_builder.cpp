@@ -220,6 +220,7 @@ Scene view_of(const SceneArrays& arrays) {
   scene.tangents = view(arrays.tangents);
   scene.textures = view(arrays.textures), scene.texels = view(arrays.texels);
   scene.lights = view(arrays.lights), scene.cameras = view(arrays.cameras);
+  scene.camera_near = view(arrays.camera_near);
   scene.nodes = view(arrays.nodes), scene.animations = view(arrays.animations), scene.channels = view(arrays.channels);
   scene.key_times = view(arrays.key_times), scene.key_values = view(arrays.key_values),
   scene.weights = view(arrays.weights);
@@ -311,6 +312,7 @@ void finish_scene(SceneBuilder* builder, const std::string& name, ImportedScene*
   if (!out.sheens.empty()) out.sheens.resize(out.materials.size());
   if (!out.glass_maps.empty()) out.glass_maps.resize(out.materials.size());
   if (!out.iridescences.empty()) out.iridescences.resize(out.materials.size());
+  if (!out.camera_near.empty()) out.camera_near.resize(out.cameras.size());
   make_tangents(builder);
   if (!out.colors.empty()) out.colors.resize(count, Rgba16{65535, 65535, 65535, 65535});
   if (!out.normals.empty() && !out.rest_positions.empty())

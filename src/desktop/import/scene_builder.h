@@ -54,6 +54,7 @@ struct SceneArrays {
   std::vector<std::uint32_t> texels;
   std::vector<Light> lights;
   std::vector<Camera> cameras;
+  std::vector<float> camera_near;  // of the first cameras
   std::vector<Node> nodes;
   std::vector<Animation> animations;
   std::vector<Channel> channels;

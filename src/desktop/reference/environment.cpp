@@ -32,13 +32,32 @@ void place_of(const Vec3d& direction, double side, double* x, double* y) {
   *x = std::clamp((u + 1) / 2 * side, 0.0, side), *y = std::clamp((v + 1) / 2 * side, 0.0, side);
 }
 
-Vec3d map_at(const Scene& scene, const Vec3d& direction) {
+template <class Texel>
+Vec3d map_at(const Scene& scene, const Vec3d& direction, Texel texel) {
   double x, y;
   place_of(direction, scene.environment_info[0].side, &x, &y);
   const int column = static_cast<int>(std::floor(x - 0.5)), row = static_cast<int>(std::floor(y - 0.5));
   const double s = x - 0.5 - column, t = y - 0.5 - row;
-  return (texel_at(scene, column, row) * (1 - s) + texel_at(scene, column + 1, row) * s) * (1 - t) +
-         (texel_at(scene, column, row + 1) * (1 - s) + texel_at(scene, column + 1, row + 1) * s) * t;
+  return (texel(scene, column, row) * (1 - s) + texel(scene, column + 1, row) * s) * (1 - t) +
+         (texel(scene, column, row + 1) * (1 - s) + texel(scene, column + 1, row + 1) * s) * t;
+}
+Vec3d map_at(const Scene& scene, const Vec3d& direction) { return map_at(scene, direction, texel_at); }
+
+double luminance_of(const Vec3d& c) { return 0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z; }
+
+// A texel without what the directional light of the sun brings.
+Vec3d dimmed_texel_at(const Scene& scene, int column, int row) {
+  const EnvironmentInfo& info = scene.environment_info[0];
+  const Vec3d texel = texel_at(scene, column, row);
+  if (scene.environment_suns.empty()) return texel;
+  const EnvironmentSun& sun = scene.environment_suns[0];
+  const int side = static_cast<int>(info.side);
+  const auto index = static_cast<int>(octahedral_index(column, row, side));
+  const Vec3d direction =
+      normalize(from_octahedral(2 * (index % side + 0.5) / side - 1, 2 * (index / side + 0.5) / side - 1));
+  const double level = static_cast<double>(sun.surroundings), own = luminance_of(texel);
+  if (-dot(direction, to_double(scene.lights[sun.light].direction)) < static_cast<double>(sun.cos_shown)) return texel;
+  return own > level ? texel * (level / own) : texel;
 }
 
 // A piece of the square subtends its area / |point|³.
@@ -46,8 +65,6 @@ double cubed_distance(const Vec3d& point) {
   const double square = dot(point, point);
   return square * std::sqrt(square);
 }
-
-double luminance_of(const Vec3d& c) { return 0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z; }
 
 // Value of the diffuse and glossy lobes for light from all around in the renderer's model: the glossy lobe takes
 // nothing from the diffuse light, and only diffuse light is shadowed, if shadows are simulated.
@@ -71,7 +88,7 @@ Vec3d light_in_model(const Reference& reference, const ReferenceSurface& s, cons
   auto add = [&](const Vec3d& direction, double density, double other) {
     const double cosine = dot(s.normal, direction);
     if (!(cosine > 0) || !(density > 0)) return;
-    sum += value_in_model(reference, s, to_viewer, direction) * map_at(*frame.scene, direction) *
+    sum += value_in_model(reference, s, to_viewer, direction) * map_at(*frame.scene, direction, dimmed_texel_at) *
            (cosine * power_heuristic(density, other) / density);
   };
   const double u = samples->next(), v = samples->next();
@@ -178,12 +195,11 @@ Vec3d environment_light(const Reference& reference, const ReferenceOptions& opti
   return sum * transmittance(reference.world, leave(frame, s, direction, kInfinity), {kNone, nullptr, true});
 }
 
-Vec3d environment_light_as_rendered(const Reference& reference, const ReferenceSurface& s, const Vec3d& to_viewer,
-                                    bool is_first) {
+Vec3d environment_light_as_rendered(const Reference& reference, const ReferenceSurface& s, const Vec3d& to_viewer) {
   const FrameData& frame = *reference.world.frame;
   const Scene& scene = *frame.scene;
   if (!environment_lights(scene, frame.mask, frame.settings.indirect)) return {0, 0, 0};
-  const bool casts = is_first && has(frame.mask, Effect::environment_shadow) && !is_zero(s.even);
+  const bool casts = has(frame.mask, Effect::environment_shadow) && !is_zero(s.even);
   Vec3d sum = {0, 0, 0};
   if (environment_lights_diffuse(frame.mask))
     sum = s.even * environment_irradiance(scene.environment_info[0], s.normal) *

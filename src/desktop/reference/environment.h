@@ -23,9 +23,8 @@ Vec3d sample_environment(const Reference& reference, const Pair& pair);
 Vec3d environment_light(const Reference& reference, const ReferenceOptions& options, const ReferenceSurface& s,
                         const Vec3d& to_viewer, bool goes_on, ReferenceSamples* samples);
 
-// The renderer's own approximation: nine coefficients, the split sum, and at first hits the visible fraction of all
-// distant lights (where a pixel traces rays to some).
-Vec3d environment_light_as_rendered(const Reference& reference, const ReferenceSurface& s, const Vec3d& to_viewer,
-                                    bool is_first);
+// The renderer's own approximation: nine coefficients, the split sum, and the visible fraction of all distant lights
+// (where a pixel traces rays to some).
+Vec3d environment_light_as_rendered(const Reference& reference, const ReferenceSurface& s, const Vec3d& to_viewer);
 
 }  // namespace pocketray

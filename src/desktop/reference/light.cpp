@@ -252,7 +252,7 @@ Vec3d sum_lamp(const Reference& reference, const ReferenceSurface& s, const Vec3
 }  // namespace
 
 Vec3d sum_light_points(const Reference& reference, const ReferenceSurface& s, const Vec3d& to_viewer,
-                       bool with_area_lights) {
+                       bool with_area_lights, bool with_shown_sun) {
   const FrameData& frame = *reference.world.frame;
   Vec3d sum = {0, 0, 0};
   for (int r = 0; r < frame.lights.run_count; ++r) {
@@ -261,6 +261,7 @@ Vec3d sum_light_points(const Reference& reference, const ReferenceSurface& s, co
       const LightPoint& light = frame.lights.points[i];
       const bool is_area = light.material != kNone;
       if (is_area && !with_area_lights) continue;
+      if (!with_shown_sun && i >= frame.lights.sun_begin && i < frame.lights.sun_end) continue;
       // A piece of an emitter does not light itself; stored light includes that of its own material.
       if (is_area && is_own(frame, s, light) && (has_stored_light(frame) || is_of_piece(frame, s.triangle, light)))
         continue;
@@ -334,7 +335,8 @@ double emitter_density(const Reference& reference, std::uint32_t triangle) {
 
 Vec3d sample_direct_light(const Reference& reference, const ReferenceOptions& options, const ReferenceSurface& s,
                           const Vec3d& to_viewer, bool goes_on, ReferenceSamples* samples) {
-  return sum_light_points(reference, s, to_viewer, false) +
+  const bool samples_sun = options.transport == Transport::physical && !reference.environment_shares.empty();
+  return sum_light_points(reference, s, to_viewer, false, !samples_sun) +
          area_light(reference, options, s, to_viewer, goes_on, samples) +
          environment_light(reference, options, s, to_viewer, goes_on, samples);
 }

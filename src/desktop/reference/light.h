@@ -21,9 +21,9 @@ double emitted_power(const Material& m);
 double emitter_density(const Reference& reference, std::uint32_t triangle);
 
 // Radiance towards the viewer, directly from the frame's point, spot and directional lights and, on request, from the
-// points that represent area lights.
+// points that represent area lights and the sun that the environment shows.
 Vec3d sum_light_points(const Reference& reference, const ReferenceSurface& s, const Vec3d& to_viewer,
-                       bool with_area_lights);
+                       bool with_area_lights, bool with_shown_sun);
 
 // One sample of the radiance towards the viewer that comes directly from the lights. In full light transport, if the
 // path continues, area lights get their share by multiple importance sampling.

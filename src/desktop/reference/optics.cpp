@@ -29,8 +29,11 @@ ReferenceRay reference_camera_ray(const CameraRays& c, double column, double row
   double sx = 2 * column / static_cast<double>(c.width) - 1, sy = 1 - 2 * row / static_cast<double>(c.height);
   Vec3d across = to_double(c.right) * sx + to_double(c.up) * sy, eye = to_double(c.eye);
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  if (c.orthographic) return {eye + across, to_double(c.forward), 0, kInfinity};
-  return {eye, normalize(to_double(c.forward) + across), 0, kInfinity};
+  const Vec3d forward = to_double(c.forward);
+  const double near_distance = static_cast<double>(c.near_distance);
+  if (c.orthographic) return {eye + across + forward * near_distance, forward, 0, kInfinity};
+  const Vec3d way = forward + across;
+  return {eye + way * near_distance, normalize(way), 0, kInfinity};
 }
 
 ReferenceContact gather_contact(const ReferenceWorld& world, const ReferenceRay& ray, const ReferenceHit& first) {

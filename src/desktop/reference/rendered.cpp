@@ -62,9 +62,8 @@ Vec3d shade(const Reference& reference, const ReferenceRay& ray, const Reference
   if (m.unlit && has(frame.mask, Effect::emission)) return s.diffuse;
   const double open = has(frame.mask, Effect::ambient) ? s.open : 1;
   Vec3d sum = s.emission + exact_indirect_of(*frame.scene, s.even, frame.mask) * open;
-  sum += reflected_surroundings(frame, s, -ray.direction) +
-         environment_light_as_rendered(reference, s, -ray.direction, branch.depth == 0);
-  if (lobe_weight(s, -ray.direction) > 0) sum += sum_light_points(reference, s, -ray.direction, true);
+  sum += reflected_surroundings(frame, s, -ray.direction) + environment_light_as_rendered(reference, s, -ray.direction);
+  if (lobe_weight(s, -ray.direction) > 0) sum += sum_light_points(reference, s, -ray.direction, true, true);
   Vec3d turned = {0, 0, 0};
   if (!is_zero(lobes_of(s).mirror)) turned += s.mirror;
   if (!is_zero(s.transmission)) {

@@ -22,7 +22,8 @@ std::string text_of(const Vec3& v) {
 
 std::string camera_text(const CameraRays& c) {
   return text_of(c.eye) + " " + text_of(c.forward) + " " + text_of(c.right) + " " + text_of(c.up) +
-         (c.orthographic ? " orthographic" : "");
+         (c.orthographic ? " orthographic" : "") +
+         (c.near_distance > 0 ? " near " + std::to_string(c.near_distance) : "");
 }
 
 }  // namespace
