@@ -63,7 +63,7 @@ Status find_need(const Scene& scene, const Settings& settings, EffectMask mask, 
   CHECK(in != nullptr);
   *in = {settings, mask};
   RETURN_IF_ERROR(light_point_count(scene, settings, in->mask, &in->light_points));
-  in->sample_points = sample_point_count(settings, in->mask, in->light_points);
+  in->sample_points = sample_point_count(in->mask, in->light_points);
   in->selected_points = has(in->mask, Effect::source_selection) ? in->light_points : 0;
   return success();
 }

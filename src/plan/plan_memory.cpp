@@ -87,7 +87,7 @@ Status plan_memory_with(const Scene& scene, const Settings& settings, const Effe
   add_part(plan, "accelerator", ArenaKind::persistent, keep);
   add_part(plan, "pose", ArenaKind::persistent, moves ? pose_need(scene) : 0);
   scratch = std::max(scratch, indirect_need(scene, settings, prepared_methods(scene, settings, effects.mask)).scratch);
-  const std::uint32_t sample_points = sample_point_count(settings, effects.mask, lights.points);
+  const std::uint32_t sample_points = sample_point_count(effects.mask, lights.points);
   plan->planned_for = {settings, effects.mask, lights.points, sample_points, lights.selected};
   for (const MemoryRow& row : memory_rows())
     add_part(plan, row.part, ArenaKind::persistent, row.need(scene, plan->planned_for));

@@ -307,6 +307,7 @@ void trace_sample(Tracer* tracer, const SharedTile<Reach>& tile, std::uint32_t s
                   Region<Reach>* region) {
   const FrameData& frame = *tracer->frame;
   const std::uint32_t sample_count = frame.settings.samples_per_pixel;
+  CHECK_LT(sample, sample_count);
   const Vec2 offset = rook_point(sample, sample_count);
   const PixelList<Reach>& wanted = tile.lists->wanted;
   FirstHits first;

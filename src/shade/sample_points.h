@@ -1,7 +1,6 @@
 // Light points of a pixel's samples. Each sample has points of its own on area lights, so that 4 samples of 4 points
 // see a penumbra as 16 points do. The centre of a pixel with samples at edges has the points of pixels without.
 #pragma once
-#include "base/check.h"
 #include "shade/frame_data.h"
 #include "shade/tracer.h"
 
@@ -14,8 +13,9 @@ constexpr std::uint32_t point_set_count(const Settings& settings, EffectMask mas
   return has(mask, Effect::edge_sampling) ? settings.edge_samples : 0;
 }
 
-constexpr std::uint32_t sample_point_count(const Settings& settings, EffectMask mask, std::uint32_t light_points) {
-  return point_set_count(settings, mask) * light_points;  // at most 16 × 4,096
+// Number of points for which memory is planned: enough for any number of samples, which may change later.
+constexpr std::uint32_t sample_point_count(EffectMask mask, std::uint32_t light_points) {
+  return has(mask, Effect::area_light) ? kSampleCountMax * light_points : 0;
 }
 
 // Returns the points of a sample, in the order of kept_sample_offset(), among two arrays like Lights::points and
@@ -24,9 +24,7 @@ inline const LightPoint* points_of_sample(const FrameData& frame, std::uint32_t 
                                           Array<const LightPoint> sample_points) {
   const std::uint32_t centres = frame.settings.samples_per_pixel == 1;
   if (frame.lights.sample_points.empty() || sample < centres) return points.data;
-  const std::uint32_t begin = (sample - centres) * frame.lights.points.count;
-  CHECK_LT(begin, sample_points.count);
-  return &sample_points[begin];
+  return &sample_points[(sample - centres) * frame.lights.points.count];
 }
 inline const LightPoint* points_of_sample(const FrameData& frame, std::uint32_t sample) {
   return points_of_sample(frame, sample, frame.lights.points, frame.lights.sample_points);

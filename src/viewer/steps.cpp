@@ -133,8 +133,9 @@ constexpr std::uint32_t kRestingSamples = kSampleCountMax;
 
 bool can_refine(const Viewer& viewer, const Renderer& renderer, const ViewerLoop& loop) {
   if (loop.exact || viewer.picture_merged || viewer.options.frame_count > 0) return false;
-  return loop.refines || (renderer.effects.mask & kInterpolatingEffects) != 0 ||
-         renderer.settings.samples_per_pixel < kRestingSamples;
+  if (loop.refines || (renderer.effects.mask & kInterpolatingEffects) != 0) return true;
+  // Servers are asked for pictures of the renderer's settings.
+  return !viewer.servers && renderer.settings.samples_per_pixel < kRestingSamples;
 }
 
 // Sets the accuracy of a picture that rests: all pixels are traced, with as many samples as memory is planned for.

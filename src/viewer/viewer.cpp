@@ -428,6 +428,7 @@ Status run_viewer(Viewer* viewer, Renderer* renderer, bool* again) {
     is_first = false;
     explain_first_picture(viewer, *renderer);
   }
+  if (status.ok) status = end_refining(renderer, &loop);
   arena_release(&renderer->memory.frame, mark);
   return status;
 }

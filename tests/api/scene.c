@@ -80,12 +80,12 @@ static void quality_is_a_list_of_settings(void) {
   api_render(instance, 0, &medium);
   pocketray_close(instance);
   EXPECT(memcmp(&medium, &usual, sizeof usual) == 0);
-  double samples, points;
+  double samples, directions;
   EXPECT_OK(pocketray_set_quality(&settings, "best"));
   EXPECT_OK(pocketray_set_number(&settings, "samples", 2));
   EXPECT_OK(pocketray_get_number(&settings, "samples", &samples));
-  EXPECT_OK(pocketray_get_number(&settings, "area-lights", &points));
-  EXPECT(samples == 2 && points > 4);
+  EXPECT_OK(pocketray_get_number(&settings, "environment-shadows", &directions));
+  EXPECT(samples == 2 && directions > 32);
   instance = api_open("cornell", &options, 0);
   api_render(instance, 0, &best);
   EXPECT(memcmp(&best, &usual, sizeof usual) != 0);

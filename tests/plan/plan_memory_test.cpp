@@ -60,7 +60,8 @@ TEST_CASE("plan_memory_has_no_part_for_an_absent_effect") {
   CHECK(part_bytes(plan_for(bit(Feature::animation) | bit(Feature::ambient), bit(Effect::animation)), "pose") == 0);
   CHECK(part_bytes(plan_for(bit(Feature::point_light), 0), "lights") == arena_need<LightPoint>(1));
   CHECK(part_bytes(plan_for(bit(Feature::emission), 0), "lights") ==
-        arena_need<LightPoint>(2) + arena_need<LightPolygon>(1));  // 2 points per area light
+        arena_need<LightPoint>(2) + arena_need<LightPoint>(2 * kSampleCountMax) +  // 2 points per area light and sample
+            arena_need<LightPolygon>(1));
   CHECK(part_bytes(plan_for(bit(Feature::emission) | bit(Feature::specular), 0), "lights") >
         arena_need<LightPoint>(9));  // 9 points, in groups
   CHECK(part_bytes(plan_for(bit(Feature::emission), bit(Effect::area_light)), "lights") == 0);

@@ -32,8 +32,8 @@ Status read_picture(const std::string& path, AnyPicture* picture);
 struct Development {
   bool measured = false;  // exposure: to middle grey, of the reference if that is linear, otherwise of the test
   double exposure = 1;    // otherwise this
+  bool aligned = false;   // scale the test's light to the reference's, or expose light to be closest to levels
   Tone tone = Tone::clip;
-  bool aligned = false;  // scale the test's light to the reference's, or expose light to be closest to levels
 };
 
 struct Comparison {

@@ -173,6 +173,7 @@ Status aim(Session* session) {
     return job->measure_exposure || wants_exposure(*renderer) ? success() : answer_view_query(session);
   }
   renderer->view.exposure = job->request.exposure > 0 ? job->request.exposure : session->own_exposure;
+  renderer->settings.tone = job->request.settings.tone;
   const bool has_light = job->request.light_pitch > 0;
   FrameTask task = {job->request.seconds, has_light ? FramePurpose::shared_light : FramePurpose::shared_rows};
   task.rows = {job->request.row_begin, job->request.row_end};

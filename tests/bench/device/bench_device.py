@@ -143,7 +143,7 @@ def bake(baker, scene, shared, folder):
         if not os.path.exists(source):
             return None
     target = os.path.join(folder, os.path.basename(scene) + ".pray")
-    run = subprocess.run([baker, "bake", source, "-o", target], capture_output=True, text=True)
+    run = subprocess.run([baker, "bake", source, "--no-radiosity", "-o", target], capture_output=True, text=True)
     if run.returncode:
         fail(f"cannot bake {scene}: {run.stderr.strip()}")
     return target
