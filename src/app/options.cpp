@@ -110,9 +110,8 @@ void add_exposure(Command command, CommonOptions* o) {
       .one_of({kToneNames[0], kToneNames[1]})
       .capture_default_str()
       .details(
-          "clip: each of red, green and blue ends at white. film: what is brighter than half of white fades to white, "
-          "with "
-          "its hue.");
+          "clip: each of red, green and blue ends at white. film: light brighter than half of white fades to white and "
+          "keeps its hue.");
 }
 
 void add_memory_and_devices(Command command, CommonOptions* o) {

@@ -190,6 +190,12 @@ double time_of(const RenderOptions& o, const RenderRequest& request, std::uint32
 std::vector<std::string> unexpected(const RenderOptions& o, const RenderRequest& request, const Renderer& renderer) {
   const Scene& scene = renderer.scene;
   std::vector<std::string> notes;
+  if (renderer.settings.tone != Tone::clip) {
+    if (stores_values(request.kind))
+      notes.push_back("--tone has no effect: .pfm and .exr store radiance");
+    else if (request.aov != Aov::none)
+      notes.push_back("--tone has no effect: the picture does not show light");
+  }
   const bool sequence = request.sequence.given && o.turntable == 0;
   const double last = sequence ? time_of(o, request, request.sequence.last, scene.info) : o.seconds;
   if (!is_animated(scene) || renderer.view.animation == kNone) {

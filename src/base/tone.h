@@ -12,7 +12,7 @@ enum class Tone : std::uint8_t { clip, film };
 constexpr int kToneCount = 2;
 constexpr const char* kToneNames[kToneCount] = {"clip", "film"};
 
-// What a display shows: exposure × radiance, by the tone's curve.
+// A display shows exposure × radiance, by the tone's curve.
 struct Display {
   float exposure;
   Tone tone = Tone::clip;

@@ -53,11 +53,7 @@ void choose_kernels(Renderer* renderer) {
   renderer->frame.settings = renderer->settings;
   renderer->frame.mask = renderer->effects.mask;
   renderer->frame.kernels.surface = find_surface_function(renderer->effects.mask);
-  renderer->frame.kernels.first_surface = renderer->frame.kernels.surface;
-  renderer->frame.kernels.add_later_light =
-      has(renderer->effects.mask, Effect::environment_shadow)  ? add_later_environment
-      : has(renderer->effects.mask, Effect::instant_radiosity) ? add_later_virtual_light
-                                                               : nullptr;
+  renderer->frame.kernels.add_later_light = is_interleaved(renderer->effects.mask) ? add_later_sources : nullptr;
   find_texture_functions(&renderer->frame);
   find_surroundings(&renderer->frame);
   if (renderer->effects.mask & kMapEffects & kEffectsBuilt)

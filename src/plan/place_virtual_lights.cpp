@@ -167,7 +167,7 @@ void follow(const FrameData& frame, Particle particle, Walk* walk, VirtualLights
     frame.geometry.accel_info->closest(frame.geometry.accel, particle.ray, visible_filter(frame), &hit, &stats);
     if (hit.triangle == kNoTriangle) return;
     Surface s;
-    frame.kernels.first_surface(frame, particle.ray, hit, &s);
+    frame.kernels.surface(frame, particle.ray, hit, &s);
     particle.flux = particle.flux * window_at(bounce == 0 ? particle.range : 0, hit.t);
     if (!is_zero(s.diffuse) && lights->count < kVirtualLightRoom) {
       Vec3d intensity = particle.flux * to_double(s.diffuse) * (1 / kPi);
@@ -277,7 +277,7 @@ void measure_walks(const FrameData& frame, Array<const Light> scene_lights, Arra
   plain.settings = Settings();
   plain.settings.points_per_area_light = 1;
   plain.mask = frame.mask & kLights;
-  plain.kernels.first_surface = find_surface_function(0);
+  plain.kernels.surface = find_surface_function(0);
   plain.filters.visible = HitFilter();
   place_lights(scene_lights, frame.scene->materials, points, &plain);
   const double total = total_flux(plain);
@@ -294,7 +294,7 @@ void measure_walks(const FrameData& frame, Array<const Light> scene_lights, Arra
 }
 
 void place_virtual_lights(FrameData* frame) {
-  CHECK(frame != nullptr && frame->kernels.first_surface != nullptr);
+  CHECK(frame != nullptr && frame->kernels.surface != nullptr);
   VirtualLights* lights = virtual_lights_of(frame->indirect);
   CHECK(lights != nullptr && lights->area >= 0);
   const double wanted = frame->settings.virtual_lights, per_walk = lights->lights_per_walk;

@@ -91,6 +91,7 @@ void place_lights(Array<const Light> lights, Array<const Material> lamps, Array<
   CHECK_EQ(lamps.count, frame->scene->materials.count);
   std::uint32_t count = 0;
   frame->lights.run_count = 0;
+  frame->lights.sample_points = {};  // of other lights
   frame->lights.sun_begin = frame->lights.sun_end = 0;
   for (Effect kind : kKinds) {
     if (!has(frame->mask, kind)) continue;
@@ -101,7 +102,7 @@ void place_lights(Array<const Light> lights, Array<const Material> lamps, Array<
     } else {
       for (std::uint32_t i = 0; i < lights.count; ++i) {
         if (effect_of(lights[i].kind) != kind) continue;
-        const EnvironmentSun* disc = disc_of(*frame->scene, i);
+        const EnvironmentSun* disc = kind == Effect::directional_light ? disc_of(*frame->scene, i) : nullptr;
         if (!disc) {
           points[count++] = to_point(lights[i]);
           continue;
@@ -122,7 +123,7 @@ void place_lights(Array<const Light> lights, Array<const Material> lamps, Array<
 void place_sample_points(Array<const Material> lamps, Array<LightPoint> points, FrameData* frame) {
   CHECK(frame != nullptr);
   Lights& lights = frame->lights;
-  lights.sample_points = {};
+  CHECK(lights.sample_points.empty());
   const std::uint32_t sets = point_set_count(frame->settings, frame->mask);
   if (sets == 0 || lights.run_count == 0) return;
   const LightRun& run = lights.runs[lights.run_count - 1];

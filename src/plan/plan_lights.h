@@ -12,8 +12,8 @@ Status light_point_count(const Scene& scene, const Settings& settings, EffectMas
 // lights and runs for the effects of its mask. Materials that emit in `lamps` are area lights, as when they were
 // counted, however dim they are now. Allocates nothing.
 void place_lights(Array<const Light> lights, Array<const Material> lamps, Array<LightPoint> points, FrameData* frame);
-// Sets Lights::sample_points, for which there is room in `points`: the frame's other lights, and other points of the
-// same area lights. Allocates nothing.
+// After place_lights(), sets Lights::sample_points, for which there is room in `points`: the frame's other lights, and
+// other points of the same area lights. Allocates nothing.
 void place_sample_points(Array<const Material> lamps, Array<LightPoint> points, FrameData* frame);
 
 }  // namespace pocketray

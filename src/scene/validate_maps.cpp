@@ -84,15 +84,17 @@ static Status check_texture_uses(const char* array, std::uint32_t index, const S
   return success();
 }
 
-static Status check_per_material(const char* array, std::uint32_t count, const Scene& scene) {
-  if (count == 0 || count == scene.materials.count) return success();
-  return failure("%u %s for %u materials: there must be one for each or none", count, array, scene.materials.count);
+// Validates an array with an element for each material, or none.
+static Status validate_each(const char* array, std::uint32_t count, const Scene& scene,
+                            Status (*validate)(const Scene& scene, std::uint32_t index)) {
+  if (count != 0 && count != scene.materials.count)
+    return failure("%u %s for %u materials: there must be one for each or none", count, array, scene.materials.count);
+  for (std::uint32_t i = 0; i < count; ++i) RETURN_IF_ERROR(validate(scene, i));
+  return success();
 }
 
 Status validate_grains(const Scene& scene) {
-  RETURN_IF_ERROR(check_per_material("grains", scene.grains.count, scene));
-  for (std::uint32_t i = 0; i < scene.grains.count; ++i) RETURN_IF_ERROR(validate_grain(scene, i));
-  return success();
+  return validate_each("grains", scene.grains.count, scene, validate_grain);
 }
 
 static Status validate_coat(const Scene& scene, std::uint32_t index) {
@@ -119,9 +121,7 @@ static Status validate_coat(const Scene& scene, std::uint32_t index) {
 }
 
 Status validate_clear_coats(const Scene& scene) {
-  RETURN_IF_ERROR(check_per_material("clear_coats", scene.clear_coats.count, scene));
-  for (std::uint32_t i = 0; i < scene.clear_coats.count; ++i) RETURN_IF_ERROR(validate_coat(scene, i));
-  return success();
+  return validate_each("clear_coats", scene.clear_coats.count, scene, validate_coat);
 }
 
 static Status validate_sheen(const Scene& scene, std::uint32_t index) {
@@ -146,9 +146,7 @@ static Status validate_sheen(const Scene& scene, std::uint32_t index) {
 }
 
 Status validate_sheens(const Scene& scene) {
-  RETURN_IF_ERROR(check_per_material("sheens", scene.sheens.count, scene));
-  for (std::uint32_t i = 0; i < scene.sheens.count; ++i) RETURN_IF_ERROR(validate_sheen(scene, i));
-  return success();
+  return validate_each("sheens", scene.sheens.count, scene, validate_sheen);
 }
 
 static Status validate_glass_map(const Scene& scene, std::uint32_t index) {
@@ -167,9 +165,7 @@ static Status validate_glass_map(const Scene& scene, std::uint32_t index) {
 }
 
 Status validate_glass_maps(const Scene& scene) {
-  RETURN_IF_ERROR(check_per_material("glass_maps", scene.glass_maps.count, scene));
-  for (std::uint32_t i = 0; i < scene.glass_maps.count; ++i) RETURN_IF_ERROR(validate_glass_map(scene, i));
-  return success();
+  return validate_each("glass_maps", scene.glass_maps.count, scene, validate_glass_map);
 }
 
 static Status validate_iridescence(const Scene& scene, std::uint32_t index) {
@@ -190,15 +186,11 @@ static Status validate_iridescence(const Scene& scene, std::uint32_t index) {
 }
 
 Status validate_iridescences(const Scene& scene) {
-  RETURN_IF_ERROR(check_per_material("iridescences", scene.iridescences.count, scene));
-  for (std::uint32_t i = 0; i < scene.iridescences.count; ++i) RETURN_IF_ERROR(validate_iridescence(scene, i));
-  return success();
+  return validate_each("iridescences", scene.iridescences.count, scene, validate_iridescence);
 }
 
 Status validate_material_maps(const Scene& scene) {
-  RETURN_IF_ERROR(check_per_material("material_maps", scene.material_maps.count, scene));
-  for (std::uint32_t i = 0; i < scene.material_maps.count; ++i) RETURN_IF_ERROR(validate_maps(scene, i));
-  return success();
+  return validate_each("material_maps", scene.material_maps.count, scene, validate_maps);
 }
 
 }  // namespace pocketray

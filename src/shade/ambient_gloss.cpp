@@ -42,14 +42,8 @@ void surface(const FrameData& frame, const Ray& ray, const Hit& hit, Surface* s)
 }
 
 template <SurroundingsFunction light>
-void first_surface(const FrameData& frame, const Ray& ray, const Hit& hit, Surface* s) {
-  frame.kernels.plain_first_surface(frame, ray, hit, s);
-  s->glow += light(frame, ray, *s->material, *s);
-}
-
-template <SurroundingsFunction light, SurroundingsFunction first_light>
 void put_in_front(FrameData* frame) {
-  frame->kernels.surface = surface<light>, frame->kernels.first_surface = first_surface<first_light>;
+  frame->kernels.surface = surface<light>;
 }
 
 }  // namespace
@@ -70,26 +64,24 @@ Vec3 even_surroundings(const FrameData& frame, const Surface& s) {
 
 void find_surroundings(FrameData* frame) {
   CHECK(frame != nullptr && frame->scene != nullptr);
-  frame->kernels.surroundings = frame->kernels.first_surroundings =
-      has(frame->mask, Effect::ambient_gloss) ? even_light : nullptr;
+  frame->kernels.surroundings = has(frame->mask, Effect::ambient_gloss) ? even_light : nullptr;
   if (!has(kAllEffects, Effect::environment) ||
       !environment_lights(*frame->scene, frame->mask, frame->settings.indirect))
     return;
-  frame->kernels.surroundings = frame->kernels.first_surroundings =
+  frame->kernels.surroundings =
       has(frame->mask, Effect::environment_shadow) ? environment_light<false> : environment_light<true>;
 }
 
 void add_surroundings(FrameData* frame) {
-  CHECK(frame != nullptr && frame->kernels.surface != nullptr && frame->kernels.first_surface != nullptr);
+  CHECK(frame != nullptr && frame->kernels.surface != nullptr);
   CHECK(frame->kernels.surroundings != nullptr);
-  frame->kernels.plain_surface = frame->kernels.surface,
-  frame->kernels.plain_first_surface = frame->kernels.first_surface;
+  frame->kernels.plain_surface = frame->kernels.surface;
   if (frame->kernels.surroundings == even_light)
-    put_in_front<even_light, even_light>(frame);
+    put_in_front<even_light>(frame);
   else if (frame->kernels.surroundings == environment_light<true>)
-    put_in_front<environment_light<true>, environment_light<true>>(frame);
+    put_in_front<environment_light<true>>(frame);
   else
-    put_in_front<environment_light<false>, environment_light<false>>(frame);
+    put_in_front<environment_light<false>>(frame);
 }
 
 }  // namespace pocketray

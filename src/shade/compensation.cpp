@@ -129,7 +129,7 @@ struct CompensationRays {
     path->end = ray.origin + direction * (hit.triangle == kNoTriangle ? ray.t_max : hit.t);
     if (hit.triangle == kNoTriangle) return {0, 0, 0};
     Surface s;
-    frame.kernels.first_surface(frame, ray, hit, &s);
+    frame.kernels.surface(frame, ray, hit, &s);
     const float cosines = cos_receiver * -dot(s.geometric, direction), bounded = geometry_max * hit.t * hit.t;
     if (is_zero(s.diffuse) || !(cosines > bounded)) return {0, 0, 0};
     return s.diffuse * (from_lights(s) + from_virtual_lights(s)) * (1 - bounded / cosines);

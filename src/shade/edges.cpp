@@ -162,7 +162,7 @@ void add_hits(Tracer* tracer, const SampleRange& samples, EdgePixels* pixels, co
     const std::uint32_t column = pixels->column[i / samples.count], row = pixels->row[i / samples.count];
     Surface* s = pixels->hit[i].triangle != kNoTriangle ? &shadows.surface[i] : nullptr;
     observe_pixel(tracer, column, row);
-    if (s && !knows_shadows) frame.kernels.first_surface(frame, pixels->ray[i], pixels->hit[i], s);
+    if (s && !knows_shadows) frame.kernels.surface(frame, pixels->ray[i], pixels->hit[i], s);
     if (s && is_interleaved(frame.mask)) take_shared_light(tracer, column, row, s);
     tracer->tile_pixel = i;
     tracer->first_surface = s;

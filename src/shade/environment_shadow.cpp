@@ -7,7 +7,6 @@
 #include "indirect/environment.h"
 #include "shade/interleaved_rays.h"
 #include "shade/tracer.h"
-#include "shade/virtual_light.h"
 
 namespace pocketray {
 namespace {
@@ -95,12 +94,9 @@ struct SpreadIndices {
   }
 };
 
-}  // namespace
-
-void add_later_environment(Tracer* tracer, const Vec3& weight, Surface* surface) {
+void add_later(Tracer* tracer, const Vec3& weight, Surface* surface) {
   effect_entered<Effect::environment_shadow>();
   const FrameData& frame = *tracer->frame;
-  if (has(frame.mask, Effect::instant_radiosity)) add_later_virtual_light(tracer, weight, surface);
   if (is_zero(surface->diffuse) || !environment_lights_diffuse(frame.mask)) return;
   const DistantSource source = source_of(frame);
   InterleavedLight sum;
@@ -124,7 +120,9 @@ void add_later_environment(Tracer* tracer, const Vec3& weight, Surface* surface)
   surface->glow += surface->diffuse * irradiance(frame, surface->point, surface->normal, sum, false);
 }
 
-const InterleavedSource kEnvironmentSource = {Effect::environment_shadow, true,      count,  group,     place,
-                                              place_in_pattern,           list_rays, gather, irradiance};
+}  // namespace
+
+const InterleavedSource kEnvironmentSource = {Effect::environment_shadow, true,      count,  group,      place,
+                                              place_in_pattern,           list_rays, gather, irradiance, add_later};
 
 }  // namespace pocketray

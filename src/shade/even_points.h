@@ -13,7 +13,7 @@ namespace pocketray {
 // levels as there are points. Among all such sets, it has the least error for edges in any direction.
 Vec2 rook_point(std::uint32_t index, std::uint32_t count);
 
-// A cell of the unit square: its horizontal extent, and the middle of its height.
+// A cell of the unit square: its horizontal extent, the middle of its rows, and its height.
 struct UnitCell {
   double x_begin, x_end, y, height;
 };

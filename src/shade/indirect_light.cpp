@@ -37,7 +37,7 @@ bool visible_surface(Tracer* tracer, Ray* ray, Hit* hit, Surface* s, float* pass
     if (layer > 0)
       frame.geometry.accel_info->closest(frame.geometry.accel, *ray, visible_filter(frame), hit, &tracer->stats);
     if (hit->triangle == kNoTriangle) return false;
-    frame.kernels.first_surface(frame, *ray, *hit, s);
+    frame.kernels.surface(frame, *ray, *hit, s);
     if (!culls(*s->material, s->front, frame.mask)) return true;
     // A face whose back touches another face may be visible.
     Contact contact;
@@ -48,7 +48,7 @@ bool visible_surface(Tracer* tracer, Ray* ray, Hit* hit, Surface* s, float* pass
       const float t = hit->t;
       *hit = face.hit;
       hit->t = t;
-      frame.kernels.first_surface(frame, *ray, *hit, s);
+      frame.kernels.surface(frame, *ray, *hit, s);
       return true;
     }
     *passed += hit->t;

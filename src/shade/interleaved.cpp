@@ -128,7 +128,7 @@ void find_first_hits(Tracer* tracer, const SharedTile<Reach>& tile, const PixelL
   }
   for (std::uint32_t i = 0; i < count; ++i)
     if (first->hit[i].triangle != kNoTriangle)
-      frame.kernels.first_surface(frame, first->ray[i], first->hit[i], &first->shadows.surface[i]);
+      frame.kernels.surface(frame, first->ray[i], first->hit[i], &first->shadows.surface[i]);
 }
 
 // Lists the indices in KeptRays::compensation_paths of one sample of some of the region's pixels.
@@ -423,6 +423,11 @@ bool shows_same(const InterleavedPixel& a, const InterleavedPixel& b) {
   Vec3 way = b.point - a.point;
   float height = dot(a.geometric, way);
   return height * height <= kSamePlane * kSamePlane * dot(way, way);
+}
+
+void add_later_sources(Tracer* tracer, const Vec3& weight, Surface* surface) {
+  for (const InterleavedSource* source : kInterleavedSources)
+    if (has(tracer->frame->mask, source->effect)) source->add_later(tracer, weight, surface);
 }
 
 void keep_interleaved_pixels(Array<InterleavedPixel> pixels, Tracer* tracer) {

@@ -102,6 +102,9 @@ struct InterleavedSource {
   // from the sum over all pixels around it, of which only the unshadowed share counts.
   Vec3 (*irradiance)(const FrameData& frame, const Vec3& point, const Vec3& normal, const InterleavedLight& sum,
                      bool are_few);
+  // Adds light at a secondary hit. The tracer counts and observes the rays; the smaller `weight`, the share of the
+  // surface's light that reaches the pixel, the fewer there are.
+  void (*add_later)(Tracer* tracer, const Vec3& weight, Surface* surface);
 };
 extern const InterleavedSource kVirtualLightSource, kEnvironmentSource;
 constexpr const InterleavedSource* kInterleavedSources[kInterleavedSourceCount] = {&kVirtualLightSource,
@@ -110,9 +113,8 @@ constexpr const InterleavedSource* kInterleavedSources[kInterleavedSourceCount] 
 // Returns whether two pixels, both of which hit something, show one surface.
 bool shows_same(const InterleavedPixel& a, const InterleavedPixel& b);
 
-// Adds the environment's diffuse light at a secondary hit, with shadows, and light of virtual lights. The tracer counts
-// and observes the rays; the smaller `weight`, the share of the surface's light that reaches the pixel, the fewer.
-void add_later_environment(Tracer* tracer, const Vec3& weight, Surface* surface);
+// Adds the light of the frame's sources at a secondary hit.
+void add_later_sources(Tracer* tracer, const Vec3& weight, Surface* surface);
 
 // Traces the strip's pixels.
 void trace_interleaved(Tracer* tracer, const TileStrip& strip, const PixelRows& image);

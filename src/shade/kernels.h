@@ -37,11 +37,9 @@ using StripFunction = void (*)(Tracer* tracer, const TileStrip& strip, const Pix
 
 struct Kernels {
   SurfaceFunction surface = nullptr;
-  SurfaceFunction first_surface = nullptr;  // for first hits: leaves out the light that trace_strip adds
-  SurfaceFunction plain_surface = nullptr, plain_first_surface = nullptr;  // see ambient_gloss.h
-  // Null: there is only the ambient term. first_surroundings leaves out the light that trace_strip adds.
-  SurroundingsFunction surroundings = nullptr, first_surroundings = nullptr;
-  GlowFunction glow = nullptr;  // see material_maps.h
+  SurfaceFunction plain_surface = nullptr;      // see ambient_gloss.h
+  SurroundingsFunction surroundings = nullptr;  // null: there is only the ambient term
+  GlowFunction glow = nullptr;                  // see material_maps.h
   ColorFunction color = nullptr;
   NumbersFunction numbers = nullptr;
   AlphaFunction alpha = nullptr;

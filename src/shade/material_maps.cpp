@@ -96,7 +96,7 @@ void add_layers(const FrameData& frame, const Ray& ray, const Vec3& normal, floa
   s->coat.passes = through_coat * passes;
 }
 
-template <EffectMask mask, bool first>
+template <EffectMask mask>
 void mapped_surface(const FrameData& frame, const Ray& ray, const Hit& hit, Surface* s) {
   frame.kernels.plain_surface(frame, ray, hit, s);
   const Scene& scene = *frame.scene;
@@ -152,19 +152,17 @@ void mapped_surface(const FrameData& frame, const Ray& ray, const Hit& hit, Surf
   }
   if (frame.kernels.surroundings) {
     Material mapped;
-    const SurroundingsFunction surroundings = first ? frame.kernels.first_surroundings : frame.kernels.surroundings;
-    s->glow += surroundings(frame, ray, lobes_at(frame, *s, &mapped), *s) * open;
+    s->glow += frame.kernels.surroundings(frame, ray, lobes_at(frame, *s, &mapped), *s) * open;
   }
   if (has_layers) add_layers(frame, ray, unmapped, passes, open, s);
 }
 
-template <bool first>
 struct MapsPart {
   using Function = SurfaceFunction;
   static constexpr auto kTable = kMapsTable;
   template <EffectMask mask>
   static constexpr Function instance() {
-    return mapped_surface<mask, first>;
+    return mapped_surface<mask>;
   }
 };
 
@@ -196,8 +194,7 @@ void add_material_maps(FrameData* frame) {
   if (has(glow, Effect::occlusion)) glow &= ~bit(Effect::ambient);  // mapped_surface() adds it
   frame->kernels.plain_surface = find_surface_function(frame->mask & ~bit(Effect::emission) & ~kIndirectEffects);
   frame->kernels.glow = find_glow_function(glow);
-  frame->kernels.surface = Instantiations<MapsPart<false>>::find(frame->mask);
-  frame->kernels.first_surface = Instantiations<MapsPart<true>>::find(frame->mask);
+  frame->kernels.surface = Instantiations<MapsPart>::find(frame->mask);
 }
 
 }  // namespace pocketray

@@ -183,8 +183,7 @@ Vec3 SourceSearch::estimate() const {
 void find_tile_surfaces(Tracer* tracer, const RayPacket& rays, const Hit* hits, TileShadows* shadows) {
   const FrameData& frame = *tracer->frame;
   for (std::uint32_t i = 0; i < rays.count; ++i)
-    if (hits[i].triangle != kNoTriangle)
-      frame.kernels.first_surface(frame, ray_of(rays, i), hits[i], &shadows->surface[i]);
+    if (hits[i].triangle != kNoTriangle) frame.kernels.surface(frame, ray_of(rays, i), hits[i], &shadows->surface[i]);
   std::memset(shadows->traced, 0, sizeof shadows->traced);
 }
 

@@ -9,7 +9,7 @@ void find_receivers(const FrameData& frame, const RayPacket& rays, const Hit* hi
   for (std::uint32_t i = 0; i < rays.count; ++i) {
     if (hits[i].triangle == kNoTriangle) continue;
     Surface& s = shadows->surface[i];
-    frame.kernels.first_surface(frame, ray_of(rays, i), hits[i], &s);
+    frame.kernels.surface(frame, ray_of(rays, i), hits[i], &s);
     receivers->origin[i] = safe_origin(s, 1);
     if (receives(frame, s)) receivers->pixel[receivers->count++] = static_cast<std::uint8_t>(i);
   }

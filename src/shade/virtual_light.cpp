@@ -107,7 +107,8 @@ void add_later_virtual_light(Tracer* tracer, const Vec3& weight, Surface* surfac
   surface->glow += s.diffuse * (lit * (1 / kPiF));
 }
 
-const InterleavedSource kVirtualLightSource = {Effect::instant_radiosity, false,     count,  group,     place,
-                                               place_in_pattern,          list_rays, gather, irradiance};
+const InterleavedSource kVirtualLightSource = {
+    Effect::instant_radiosity, false,     count,  group,      place,
+    place_in_pattern,          list_rays, gather, irradiance, add_later_virtual_light};
 
 }  // namespace pocketray

@@ -132,7 +132,7 @@ void for_each_hit(const TileOfPixels& tile, Visit visit) {
 Surface surface_at(const FrameData& frame, std::uint32_t x, std::uint32_t y, std::uint32_t sample, const Hit& hit) {
   const Vec2 offset = kept_sample_offset(frame.settings, sample);
   Surface s;
-  frame.kernels.first_surface(
+  frame.kernels.surface(
       frame, camera_ray(frame.view.camera, static_cast<float>(x) + offset.x, static_cast<float>(y) + offset.y), hit,
       &s);
   return s;

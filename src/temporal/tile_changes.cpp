@@ -158,8 +158,8 @@ const Surface& surface_of(TileSearch* t, std::uint32_t k) {
   if (t->has_surface >> k & 1) return t->surface[k];
   t->has_surface |= std::uint64_t(1) << k;
   const std::uint32_t i = t->receiver[k];
-  t->frame.kernels.first_surface(t->frame, sample_ray(t->frame, t->pixels, i, t->offset),
-                                 t->hits[index_of(t->frame.settings, t->pixels, i)], &t->surface[k]);
+  t->frame.kernels.surface(t->frame, sample_ray(t->frame, t->pixels, i, t->offset),
+                           t->hits[index_of(t->frame.settings, t->pixels, i)], &t->surface[k]);
   return t->surface[k];
 }
 

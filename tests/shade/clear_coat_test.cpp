@@ -37,21 +37,12 @@ struct Sheet : SunlitSheet {
   }
 };
 
-Vec3 seen(GeneratedScene* s, const Vec3& eye) {
-  auto t = ray_renderer(s);
-  return look(*t, eye, kPoint);
-}
-
 // Value × cosine of the coat's lobe of strength 1, by the lobe in double precision.
 double lobe_of(double r, const Vec3d& n, const Vec3d& v, const Vec3d& l) {
   const double rest = 1 - mirror_share(r), f = 0.04 * rest;
   Material m;
   m.brdf = kGgx, m.roughness = static_cast<float>(r * r), m.grazing = static_cast<float>(rest);
   return kGgxBrdf.exact_value(m, {f, f, f}, {0, 0, 0}, {n, {0, 0, 0}}, v, l).x * std::fmax(dot(n, l), 0);
-}
-
-void check_near(const Vec3& found, const Vec3d& expected, double tolerance = 2e-4) {
-  for (int c = 0; c < 3; ++c) CHECK(static_cast<double>(found[c]) == doctest::Approx(expected[c]).epsilon(tolerance));
 }
 
 }  // namespace

@@ -25,15 +25,6 @@ struct Sheet : SunlitSheet {
   }
 };
 
-Vec3 seen(GeneratedScene* s, const Vec3& eye) {
-  auto t = ray_renderer(s);
-  return look(*t, eye, kPoint);
-}
-
-void check_near(const Vec3& found, const Vec3d& expected, double tolerance = 2e-4) {
-  for (int c = 0; c < 3; ++c) CHECK(static_cast<double>(found[c]) == doctest::Approx(expected[c]).epsilon(tolerance));
-}
-
 Vec3d mixed(const Vec3d& a, const Vec3d& b, double share) { return a * (1 - share) + b * share; }
 
 const Vec3 kEyes[] = {{0.4f, 0.1f, 3}, {-1, -2, 1.5f}, {4, 1, 0.4f}};

@@ -35,11 +35,6 @@ double cap_in_lobe(const Vec3d& d, double cap, double roughness) {
   return sum / weights;
 }
 
-Vec3 seen(GeneratedScene* s, const Vec3& eye) {
-  auto t = ray_renderer(s);
-  return look(*t, eye, kPoint);
-}
-
 }  // namespace
 
 // Goal: light that passes a rough pane comes from around the direction behind it, as widely as the lobe. Method: an

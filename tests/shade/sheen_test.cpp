@@ -32,15 +32,6 @@ struct Sheet : SunlitSheet {
   }
 };
 
-Vec3 seen(GeneratedScene* s, const Vec3& eye) {
-  auto t = ray_renderer(s);
-  return look(*t, eye, kPoint);
-}
-
-void check_near(const Vec3& found, const Vec3d& expected, double tolerance = 2e-4) {
-  for (int c = 0; c < 3; ++c) CHECK(static_cast<double>(found[c]) == doctest::Approx(expected[c]).epsilon(tolerance));
-}
-
 double passes_of(const Vec3& color, double roughness, double cosine) {
   return 1 - static_cast<double>(max_component(color)) * sheen_albedo(roughness, cosine);
 }

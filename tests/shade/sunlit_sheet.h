@@ -34,4 +34,14 @@ struct SunlitSheet {
   }
 };
 
+// Radiance of the sheet's point.
+inline Vec3 seen(GeneratedScene* s, const Vec3& eye) {
+  auto t = ray_renderer(s);
+  return look(*t, eye, kPoint);
+}
+
+inline void check_near(const Vec3& found, const Vec3d& expected, double tolerance = 2e-4) {
+  for (int c = 0; c < 3; ++c) CHECK(static_cast<double>(found[c]) == doctest::Approx(expected[c]).epsilon(tolerance));
+}
+
 }  // namespace pocketray

@@ -41,10 +41,6 @@ PaneLook look_at(GeneratedScene* s, const Vec3& eye) {
   return result;
 }
 
-void check_near(const Vec3& found, const Vec3d& expected, double tolerance = 2e-4) {
-  for (int c = 0; c < 3; ++c) CHECK(static_cast<double>(found[c]) == doctest::Approx(expected[c]).epsilon(tolerance));
-}
-
 double pane_reflectance(const Vec3& eye) {
   float cos_t;
   const double r = static_cast<double>(fresnel(normalize(eye - kPoint).z, 1 / 1.5f, &cos_t));

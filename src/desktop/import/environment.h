@@ -21,7 +21,7 @@ Status decode_radiance(const std::vector<std::uint8_t>& bytes, RadiancePicture* 
 Status make_environment(std::uint32_t side, std::uint32_t grid, const std::function<Vec3d(const Vec3d&)>& radiance,
                         ImportedEnvironment* environment);
 constexpr std::uint32_t kGlossSide = 64;
-// As above. If enough light comes from a small disc, it becomes a directional light: the environment's sun.
+// make_environment(), but a small disc with enough of the light becomes a directional light: the environment's sun.
 Status make_sunny_environment(std::uint32_t side, std::uint32_t grid,
                               const std::function<Vec3d(const Vec3d&)>& radiance, ImportedEnvironment* environment);
 

@@ -36,7 +36,7 @@ std::vector<MattePoint> matte_points(const FrameData& frame) {
     frame.geometry.accel_info->closest(frame.geometry.accel, ray, visible_filter(frame), &hit, nullptr);
     if (hit.triangle == kNoTriangle) continue;
     Surface& s = points[i].surface;
-    frame.kernels.first_surface(frame, ray, hit, &s);
+    frame.kernels.surface(frame, ray, hit, &s);
     const Material& m = *s.material;
     points[i].is_matte = !is_zero(s.diffuse) && (is_zero(m.specular) || reflects_surroundings(m)) &&
                          is_zero(m.mirror) && is_zero(m.transmission) && is_zero(m.emission) && !m.unlit &&
