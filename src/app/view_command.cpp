@@ -210,6 +210,8 @@ void let_null_screen_rest(const ViewCommand& o) {
 int run(ViewCommand o) {
   if (Status logged = start_log(o); !logged.ok) return report(logged);
   o.view.hud = !o.no_hud;
+  const SettingOption& samples = o.common.settings["samples"];
+  o.view.keeps_samples = samples.given && samples.given();
   Viewer viewer;
   Settings size;
   const platform::Device* device;

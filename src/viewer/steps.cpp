@@ -135,13 +135,14 @@ bool can_refine(const Viewer& viewer, const Renderer& renderer, const ViewerLoop
   if (loop.exact || viewer.picture_merged || viewer.options.frame_count > 0) return false;
   if (loop.refines || (renderer.effects.mask & kInterpolatingEffects) != 0) return true;
   // Servers are asked for pictures of the renderer's settings.
-  return !viewer.servers && renderer.settings.samples_per_pixel < kRestingSamples;
+  return !viewer.servers && !viewer.options.keeps_samples && renderer.settings.samples_per_pixel < kRestingSamples;
 }
 
 // Sets the accuracy of a picture that rests: all pixels are traced, with as many samples as memory is planned for.
-Status set_resting_quality(Renderer* renderer) {
+Status set_resting_quality(const Viewer& viewer, Renderer* renderer) {
   Quality exact = renderer->settings;
   trace_all_pixels(&exact);
+  if (viewer.options.keeps_samples) return set_quality(renderer, exact);
   const std::uint32_t samples = std::exchange(exact.samples_per_pixel, kRestingSamples);
   if (set_quality(renderer, exact).ok) return success();
   exact.samples_per_pixel = samples;
@@ -153,7 +154,7 @@ Status refine(Viewer* viewer, Renderer* renderer, ViewerLoop* loop) {
   if (!loop->refines) {
     loop->quality = renderer->settings;
     loop->refines = true;
-    RETURN_IF_ERROR(set_resting_quality(renderer));
+    RETURN_IF_ERROR(set_resting_quality(*viewer, renderer));
     RETURN_IF_ERROR(begin_frame(renderer, {loop->seconds}));
     loop->progressive = afresh();
   }

@@ -27,6 +27,7 @@ struct ViewOptions {
   std::uint32_t frame_count = 0;
   bool hud = true;             // shown from the start
   bool has_reference = false;  // the build has --side-by-side
+  bool keeps_samples = false;  // a picture at rest is not refined to more
   bool drops_frames = true;    // a stalled split frame is dropped for newer input; false: for comparisons
 };
 

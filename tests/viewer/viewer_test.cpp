@@ -270,7 +270,7 @@ namespace {
 // Shows a still with interpolated pixels, alone or within a budget, until a time, a button pressed before; the picture.
 // *last receives the settings of the last frame.
 Picture picture_at(double seconds, const Quality& quality, bool budgeted, double button_at, double button_seconds = 0.2,
-                   Quality* last = nullptr) {
+                   Quality* last = nullptr, bool keeps_samples = false) {
   Stage stage;
   if (button_at > 0) {
     stage.press(button_at, platform::Button::left);
@@ -278,6 +278,7 @@ Picture picture_at(double seconds, const Quality& quality, bool budgeted, double
   }
   stage.leave(seconds);
   stage.open("statue");
+  stage.viewer.options.keeps_samples = keeps_samples;
   CommonOptions common;
   common.scene = "statue", common.size = "320x60", common.threads = 1;
   common.settings["selective"].real = static_cast<double>(quality.selective_contrast);
@@ -306,10 +307,10 @@ Picture picture_at(double seconds, const Quality& quality, bool budgeted, double
 
 namespace {
 
-Picture statue_of_16_samples() {
+Picture statue_of_samples(std::uint32_t count) {
   CommonOptions common;
   common.scene = "statue", common.size = "320x60", common.threads = 1;
-  common.settings["samples"].count = 16;
+  common.settings["samples"].count = count;
   OpenHooks hooks;
   hooks.output_bytes = viewer_bytes;
   OpenScene opened;
@@ -331,7 +332,7 @@ TEST_CASE("viewer_refines_what_rests") {
     Quality some;
     const Picture exact = picture_at(20, all, budgeted, 0), moved = picture_at(40, all, budgeted, 19);
     CHECK(!same_picture(moved, exact));
-    CHECK(same_picture(exact, statue_of_16_samples()));
+    CHECK(same_picture(exact, statue_of_samples(16)));
     for (int i = 0; i < 4; ++i) {
       some.selective_contrast = i % 3 == 0 ? 0.25f : 0;
       some.resolution = i == 0 ? Resolution::full : i == 1 ? Resolution::half : Resolution::checkerboard;
@@ -341,6 +342,19 @@ TEST_CASE("viewer_refines_what_rests") {
       picture_at(20, some, budgeted, 19, 2, &last);  // still moving
       CHECK(same_quality(last, some));
     }
+  }
+}
+
+// Goal: samples that were asked for stay while a picture rests; only interpolated pixels are traced. Method: as above.
+TEST_CASE("viewer_keeps_the_samples_asked_for_at_rest") {
+  const Quality all;
+  Quality some;
+  some.selective_contrast = 0.25f;
+  for (bool budgeted : {false, true}) {
+    CAPTURE(budgeted);
+    const Picture one = picture_at(20, all, budgeted, 0, 0.2, nullptr, true);
+    CHECK(same_picture(picture_at(20, some, budgeted, 0, 0.2, nullptr, true), one));
+    CHECK(same_picture(one, statue_of_samples(1)));
   }
 }
 
