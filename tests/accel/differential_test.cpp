@@ -3,6 +3,7 @@
 
 #include "accel/oracle.h"
 #include "accel/variant.h"
+#include "support/effort.h"
 #include "support/hard_case.h"
 
 using namespace pocketray;
@@ -105,7 +106,8 @@ std::vector<Group> random_groups(Rng* rng, const Mesh& mesh, const World& oracle
   std::vector<Group> groups(static_cast<std::size_t>(count));
   for (int i = 0; i < count; ++i) {
     Group& group = groups[static_cast<std::size_t>(i)];
-    const int counts[] = {kGroupMax, kGroupMax, 1 + static_cast<int>(next_u32(rng) % kGroupMax), 1};
+    const int most = kEffortDivisor > 6 ? kGroupMax / 4 : kGroupMax;
+    const int counts[] = {most, kGroupMax, 1 + static_cast<int>(next_u32(rng) % static_cast<unsigned>(most)), 1};
     group.rays = random_rays(rng, mesh, oracle.accel.bounds, counts[i % 4]);
     show_gate_progress(static_cast<std::uint64_t>(i), static_cast<std::uint64_t>(count));
     if (i % 8 >= 5) cut_at_hit(rng, oracle, &group.rays);

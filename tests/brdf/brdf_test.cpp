@@ -214,7 +214,7 @@ TEST_CASE("brdf_exact_value_is_the_value") {
 // cosine / density over random directions from sample(), against its quadrature, within the standard error. For every
 // lobe listed.
 TEST_CASE("brdf_samples_integrate_to_the_albedo") {
-  constexpr int kSamples = 40000;
+  constexpr int kSamples = effort(40000);
   for (const Lobe& tested : all_lobes())
     for (float exponent : {0.0f, 1.0f, 8.0f, 50.0f, 1000.0f})
       for (double degrees : {0.0, 45.0, 80.0}) {
@@ -382,7 +382,7 @@ TEST_CASE("hard_30_ggx_is_finite_at_roughness_zero_and_below_the_horizon") {
 // Goal: a white plastic reflects no more light than it receives. Method: quadrature of the diffuse lobe and the GGX
 // lobe above it, over roughness and viewing angle; Lambertian of albedo 1, F₀ = .04 to 1.
 TEST_CASE("ggx_over_white_conserves_energy") {
-  constexpr int kRings = 300;
+  constexpr int kRings = effort_side(300);
   for (double alpha : {0.1, 0.3, 0.6, 1.0})
     for (double degrees : {0.0, 30.0, 60.0, 80.0}) {
       Material m;
@@ -407,7 +407,7 @@ TEST_CASE("ggx_over_white_conserves_energy") {
 // Goal: the table of the share of uniform light that the lobe reflects is that share. Method: the mean of value ×
 // cosine / density over even samples, for F = 1 and for the rise alone, between the table's points.
 TEST_CASE("ggx_reflects_the_integral_of_its_value") {
-  constexpr int kSide = 60, kSteps = 15;
+  constexpr int kSide = effort_side(60), kSteps = 15;
   const BrdfInfo& ggx = *kBrdfList[kGgx];
   double worst = 0, squares = 0;
   for (int i = 0; i < kSteps; ++i)

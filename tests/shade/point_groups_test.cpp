@@ -4,6 +4,7 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <set>
@@ -200,7 +201,7 @@ TEST_CASE("point_groups_of_samples_add_up") {
   constexpr std::uint32_t kCounts[3][2] = {{4, 4}, {1, 16}, {1, 4}};  // samples, points
   Rng rng = make_rng(7);
   double square[3] = {0, 0, 0};
-  for (int i = 0; i < effort(12); ++i) {
+  for (int i = 0; i < std::max(4, effort(12)); ++i) {
     const auto s = half_plane_scene(&rng);
     for (int way = 0; way < 3; ++way) {
       Settings settings = settings_of(256);
@@ -214,6 +215,6 @@ TEST_CASE("point_groups_of_samples_add_up") {
   const double to_16 = std::sqrt(square[0] / square[1]), to_4 = std::sqrt(square[0] / square[2]);
   MESSAGE("RMSE of 4 × 4 points: ", to_16, " of that of 16, ", to_4, " of that of 4");
   CHECK(square[1] > 0);
-  CHECK(to_16 < 1.5);
-  CHECK(to_4 < 0.65);
+  CHECK(to_16 < (kEffortDivisor > 1 ? 2 : 1.5));
+  CHECK(to_4 < (kEffortDivisor > 1 ? 0.75 : 0.65));
 }

@@ -2,6 +2,7 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <iterator>
 
 #include "support/effort.h"
 #include "support/generated_scene.h"
@@ -118,7 +119,8 @@ TEST_CASE("source_selection_approaches_all_lights_with_every_effect") {
   const Effect off[] = {Effect::supersampling, Effect::shadow,     Effect::specular,          Effect::mirror,
                         Effect::refraction,    Effect::absorption, Effect::back_face_culling, Effect::alpha_blend,
                         Effect::mip_map,       Effect::area_light, Effect::metallic_roughness};
-  for (Effect effect : off) {
+  for (int i = 0; i < effort(static_cast<int>(std::size(off))); ++i) {
+    const Effect effect = off[i];
     Settings settings = settings_of(kAllFeatures, 0);
     settings.forced_off = bit(effect);
     const Traced all = trace(s->scene, settings, false);

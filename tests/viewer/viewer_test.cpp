@@ -263,10 +263,6 @@ void count_sleep(std::uint64_t duration) {
   platform::kNullBackend.sleep_ns(duration);
 }
 
-}  // namespace
-
-namespace {
-
 // Shows a still with interpolated pixels, alone or within a budget, until a time, a button pressed before; the picture.
 // *last receives the settings of the last frame.
 Picture picture_at(double seconds, const Quality& quality, bool budgeted, double button_at, double button_seconds = 0.2,
@@ -302,10 +298,6 @@ Picture picture_at(double seconds, const Quality& quality, bool budgeted, double
   if (last) *last = opened.renderer.settings;
   return Picture(opened.renderer.image.begin(), opened.renderer.image.end());
 }
-
-}  // namespace
-
-namespace {
 
 Picture statue_of_samples(std::uint32_t count) {
   CommonOptions common;
