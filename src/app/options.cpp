@@ -110,8 +110,8 @@ void add_exposure(Command command, CommonOptions* o) {
       .one_of({kToneNames[0], kToneNames[1]})
       .capture_default_str()
       .details(
-          "clip: each of red, green and blue ends at white. film: light brighter than half of white fades to white and "
-          "keeps its hue.");
+          "clip: each of red, green and blue ends at white. film: light above .8 of white fades to white, by the curve "
+          "of Khronos PBR Neutral.");
 }
 
 void add_memory_and_devices(Command command, CommonOptions* o) {

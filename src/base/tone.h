@@ -7,7 +7,7 @@
 
 namespace pocketray {
 
-// clip: each channel ends at 1. film: a shoulder above half of white, see with_shoulder().
+// clip: each channel ends at 1. film: a shoulder, see with_shoulder().
 enum class Tone : std::uint8_t { clip, film };
 constexpr int kToneCount = 2;
 constexpr const char* kToneNames[kToneCount] = {"clip", "film"};
@@ -19,17 +19,24 @@ struct Display {
   Display(float exposure_, Tone tone_ = Tone::clip) : exposure(exposure_), tone(tone_) {}
 };
 
-// Where the shoulder begins.
-constexpr float kShoulder = 0.5f;
+// Khronos PBR Neutral Tone Mapper, "Specification", without its subtraction of Fresnel's reflection: where the shoulder
+// begins, and how soon colours above it fade to white.
+constexpr float kShoulder = 0.8f, kFading = 0.15f;
 
-// Scales a colour so that its largest channel m becomes 1 − 1 / 4m, if it is above kShoulder: the curve continues the
-// straight line without a bend and approaches 1. The ratios of the channels, and so the hue, stay. Infinite channels
-// and NaN stay, too.
+// Lowers the largest channel m, if it is above kShoulder, along a curve that continues the straight line without a bend
+// and approaches 1, the others in proportion, and fades the colour to white as m grows. Channels below 0, infinite ones
+// and NaN stay.
 inline Vec3 with_shoulder(const Vec3& c) {
   const float most = max_component(c);
   if (!(most > kShoulder && most <= kRadianceMax)) return c;
-  const float inverse = 1 / most;
-  return c * (inverse - inverse * inverse * (kShoulder * kShoulder));
+  constexpr float kRoom = 1 - kShoulder;
+  const float shown = 1 - kRoom * kRoom / (most + (kRoom - kShoulder));
+  const float color = 1 / (kFading * (most - shown) + 1);  // the rest is white
+  const float scale = color * (shown / most), white = shown - shown * color;
+  Vec3 faded = c;
+  for (int i = 0; i < 3; ++i)
+    if (c[i] >= 0) faded[i] = c[i] * scale + white;
+  return faded;
 }
 inline Vec3 toned(const Vec3& exposed, Tone tone) { return tone == Tone::film ? with_shoulder(exposed) : exposed; }
 

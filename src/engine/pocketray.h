@@ -323,7 +323,7 @@ POCKETRAY_API pocketray_result pocketray_measure_exposure(pocketray_instance* in
 /* How light that is too bright for the display is shown. */
 enum {
   POCKETRAY_TONE_CLIP = 0, /* red, green and blue end at white, each by itself; the default */
-  POCKETRAY_TONE_FILM = 1  /* what is brighter than half of white fades to white, with its hue */
+  POCKETRAY_TONE_FILM = 1  /* light above .8 of white fades to white */
 };
 POCKETRAY_API pocketray_result pocketray_set_tone(pocketray_instance* instance, int tone);
 

@@ -282,30 +282,33 @@ TEST_CASE("pack_spans_equal_the_rows_they_are_of") {
     }
 }
 
-// Goal: the film tone leaves what is at most half of white as it is; above, the largest channel m becomes 1 − 1 / 4m,
-// and the hue stays. Method: the formula in double precision, to within a level; ratios of channels; what no display
-// shows is counted as without the tone.
+// Goal: the film tone is Khronos PBR Neutral without its offset: .8 of white and less stay; above, the largest channel
+// approaches white, and the colour fades to white, too. Method: the published formula in double precision, to within a
+// level; what no display shows is counted as without the tone.
 TEST_CASE("pack_tone_film_fades_to_white") {
   auto levels_of = [](const Vec3& c, Tone tone, std::uint8_t* rgb) {
     return pack_rows(&c, 1, 1, 0, 1, Display(2, tone), kRgb888, Rotation::none, false, rgb, 3);
   };
-  int last = 0, differing = 0;
+  int last[3] = {0, 0, 0}, differing = 0;
   for (float most = 0x1p-8f; most < 1e17f; most *= 1.01f) {
     const Vec3 c = Vec3{1, 0.5f, 0.25f} * most;
     std::uint8_t film[3], clip[3];
     levels_of(c, Tone::film, film), levels_of(c, Tone::clip, clip);
-    const double exposed = 2 * double(most), shown = exposed > 0.5 ? 1 - 0.25 / exposed : exposed;
+    const double start = 0.8, d = 1 - start, peak = 2 * double(most), above = 1 - d * d / (peak + d - start);
+    const double g = 1 - 1 / (0.15 * (peak - above) + 1);
     CAPTURE(most);
     for (int i = 0; i < 3; ++i) {
-      CHECK(std::abs(film[i] - srgb_level(static_cast<float>(std::ldexp(shown, -i)))) <= (exposed > 0.5 ? 1 : 0));
-      if (exposed <= 0.5) CHECK(film[i] == clip[i]);
+      const double faded = std::ldexp(above, -i) * (1 - g) + above * g;
+      CHECK(std::abs(film[i] - srgb_level(static_cast<float>(peak < start ? std::ldexp(peak, -i) : faded))) <=
+            (peak < start ? 0 : 1));
+      if (peak < start) CHECK(film[i] == clip[i]);
       differing += film[i] != clip[i];
+      CHECK(film[i] >= last[i]);
+      last[i] = film[i];
     }
-    CHECK(film[0] >= last);
-    last = film[0];
   }
   CHECK(differing > 1000);
-  CHECK(last == 255);
+  for (int level : last) CHECK(level == 255);
   const float nan = std::numeric_limits<float>::quiet_NaN(), infinity = std::numeric_limits<float>::infinity();
   std::uint8_t rgb[3];
   CHECK(levels_of({nan, 2, -1}, Tone::film, rgb).nan == 1);

@@ -94,10 +94,9 @@ double displayed_squares(const std::vector<double>& shown, const std::vector<Vec
   CHECK_GT(step, 0u);
   double sum = 0;
   for (std::size_t i = 0; i < radiance.size(); i += step) {
-    const double scale = display_scale(radiance[i], exposure, tone);
+    const Vec3d light = displayed_light(radiance[i], exposure, tone);
     for (int c = 0; c < 3; ++c) {
-      const double light = std::min(std::max(scale * static_cast<double>(radiance[i][c]), 0.0), 1.0);
-      const double difference = light - shown[3 * i + static_cast<std::size_t>(c)];
+      const double difference = light[c] - shown[3 * i + static_cast<std::size_t>(c)];
       sum += difference * difference;
     }
   }

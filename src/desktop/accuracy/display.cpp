@@ -1,15 +1,22 @@
 #include "desktop/accuracy/display.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/check.h"
 
 namespace pocketray {
 
-double display_scale(const Vec3& radiance, double exposure, Tone tone) {
-  const double most = exposure * static_cast<double>(max_component(radiance));
-  if (tone == Tone::clip || !(most > static_cast<double>(kShoulder)) || !std::isfinite(most)) return exposure;
-  return exposure * (1 - 0.25 / most) / most;
+Vec3d displayed_light(const Vec3& radiance, double exposure, Tone tone) {
+  Vec3d light = to_double(radiance) * exposure;
+  const double most = max_component(light);
+  if (tone == Tone::film && most > static_cast<double>(kShoulder) && std::isfinite(most)) {
+    const double room = 1 - static_cast<double>(kShoulder), shown = 1 - room * room / (most - 1 + 2 * room);
+    const double white = 1 - 1 / (static_cast<double>(kFading) * (most - shown) + 1);
+    light = light * (shown / most) * (1 - white) + Vec3d{shown, shown, shown} * white;
+  }
+  for (int c = 0; c < 3; ++c) light[c] = !(light[c] > 0) ? 0 : std::min(light[c], 1.0);
+  return light;
 }
 
 std::vector<double> displayed_light(const Vec3* radiance, std::size_t pixel_count, const Display& display) {
@@ -18,11 +25,8 @@ std::vector<double> displayed_light(const Vec3* radiance, std::size_t pixel_coun
   std::vector<double> light;
   light.reserve(3 * pixel_count);
   for (std::size_t i = 0; i < pixel_count; ++i) {
-    const double scale = display_scale(radiance[i], static_cast<double>(display.exposure), display.tone);
-    for (int c = 0; c < 3; ++c) {
-      const double value = static_cast<double>(radiance[i][c]) * scale;
-      light.push_back(!(value > 0) ? 0 : value < 1 ? value : 1);
-    }
+    const Vec3d shown = displayed_light(radiance[i], static_cast<double>(display.exposure), display.tone);
+    light.insert(light.end(), {shown.x, shown.y, shown.z});
   }
   return light;
 }

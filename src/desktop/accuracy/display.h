@@ -5,10 +5,10 @@
 
 namespace pocketray {
 
-// Factor by which a display scales a radiance, before channels end at 1: the exposure, less in the tone's shoulder.
-double display_scale(const Vec3& radiance, double exposure, Tone tone);
+// Light that a display shows of a radiance, within [0, 1]; NaN becomes 0.
+Vec3d displayed_light(const Vec3& radiance, double exposure, Tone tone);
 
-// R, G, B of each pixel in displayed linear light, clamped to the display range [0, 1]; NaN becomes 0.
+// R, G, B of each pixel in displayed linear light.
 std::vector<double> displayed_light(const Vec3* radiance, std::size_t pixel_count, const Display& display);
 
 // Converts light to sRGB, as input for FLIP, without quantisation.
