@@ -190,7 +190,7 @@ double time_of(const RenderOptions& o, const RenderRequest& request, std::uint32
 std::vector<std::string> unexpected(const RenderOptions& o, const RenderRequest& request, const Renderer& renderer) {
   const Scene& scene = renderer.scene;
   std::vector<std::string> notes;
-  if (renderer.settings.tone != Tone::clip) {
+  if (renderer.settings.tone != Settings().tone) {
     if (stores_values(request.kind))
       notes.push_back("--tone has no effect: .pfm and .exr store radiance");
     else if (request.aov != Aov::none)

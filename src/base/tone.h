@@ -1,6 +1,7 @@
 // How a display shows light that is brighter than it can show.
 #pragma once
 #include <cstdint>
+#include <cstring>
 
 #include "base/limits.h"
 #include "base/vec3.h"
@@ -11,6 +12,8 @@ namespace pocketray {
 enum class Tone : std::uint8_t { clip, film };
 constexpr int kToneCount = 2;
 constexpr const char* kToneNames[kToneCount] = {"clip", "film"};
+// By a name of kToneNames.
+inline Tone tone_named(const char* name) { return std::strcmp(name, kToneNames[0]) == 0 ? Tone::clip : Tone::film; }
 
 // A display shows exposure × radiance, by the tone's curve.
 struct Display {

@@ -34,9 +34,8 @@ void frame_by_default(Renderer* renderer) {
   view.camera = default_camera(view.by_default, view.framing, renderer->bounds, aspect, view.look.vertical_fov);
 }
 
-namespace {
-
-void add_what_is_missing(Renderer* renderer) {
+void complete_scene(Renderer* renderer) {
+  CHECK(renderer != nullptr);
   Scene& scene = renderer->scene;
   if (renderer->view.look.has_background || renderer->view.look.environment == EnvironmentChoice::none)
     leave_out_environment(&scene);
@@ -68,6 +67,8 @@ void add_what_is_missing(Renderer* renderer) {
   }
   if (renderer->view.look.has_background) scene.info.background = renderer->view.look.background;
 }
+
+namespace {
 
 bool moves(const Renderer& renderer) {
   return has(renderer.effects.mask, Effect::animation) && is_animated(renderer.scene);
@@ -153,7 +154,7 @@ Status plan_renderer(Renderer* renderer, const SceneStorage& storage, const Outp
   for (const Material& m : renderer->scene.materials)  // the file's program may have had more lobes
     if (m.brdf >= kBrdfCount)
       return failure("a material uses glossy lobe %u, this program has %u: bake the scene again", m.brdf, kBrdfCount);
-  add_what_is_missing(renderer);
+  complete_scene(renderer);
   renderer->effects = plan_effects(renderer->scene, renderer->settings);
   if (moves(*renderer) && animates_materials(renderer->scene)) renderer->materials.recolorable = true;
   std::uint32_t point_count;

@@ -111,6 +111,9 @@ struct Renderer {
 // which must outlive the renderer.
 void start_renderer(void* block, std::size_t block_bytes, const Settings& settings, Renderer* renderer);
 
+// Adds the camera and the lights that renderer->scene lacks. plan_renderer() does so, too.
+void complete_scene(Renderer* renderer);
+
 // Second step, with renderer->scene set: adds a missing camera and lights, plans effects and memory. On failure the
 // plans are filled as far as they got, so that they can be shown. `output` as in plan_memory().
 Status plan_renderer(Renderer* renderer, const SceneStorage& storage, const OutputNeed& output);

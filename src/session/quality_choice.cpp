@@ -22,6 +22,7 @@ void find_levels(const std::string& scene, const SceneSource& source, Renderer* 
   Front& front = cached.front;
   const bool is_measured = front.count > 1 && errors_known(front);
   const bool is_priced = is_measured && adopt_prices(&front, cached.prices);
+  complete_scene(renderer);  // its lights decide whether the environment casts shadows
   Settings automatic = renderer->settings;
   automatic.indirect = IndirectChoice::automatic;
   const EffectMask effects = plan_effects(renderer->scene, automatic).mask;

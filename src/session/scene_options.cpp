@@ -116,7 +116,7 @@ Status read_settings(const CommonOptions& o, Settings* settings) {
   ExposureChoice exposure;
   float factor;
   RETURN_IF_ERROR(parse_exposure(o.exposure, &exposure, &factor));  // checked even by commands that show nothing
-  settings->tone = o.tone == kToneNames[static_cast<int>(Tone::film)] ? Tone::film : Tone::clip;
+  settings->tone = tone_named(o.tone.c_str());
   unsigned cores = std::thread::hardware_concurrency();
   CHECK(o.emulate.empty() || device != nullptr);
   if (!o.emulate.empty() && device->core_count > 0) cores = static_cast<unsigned>(device->core_count);

@@ -62,7 +62,7 @@ if "${run[@]}" render --help | grep -q glTF; then
   check narrow_field_of_view bash -c '! cmp -s usual.ppm narrow.ppm'
 
   # Goal: the film tone shows light beyond white; pictures of other quantities and linear light stay. Method: a background of
-  # twice white, which clips to level 255 and becomes 1 − 1/8, level 240; depth and radiance of the same scene.
+  # twice white, which clips to level 255 and becomes 1 − .04/1.4, level 252; depth and radiance of the same scene.
   expect tone_name 1 'tone.*sepia.*clip.*film' render model.obj "${small[@]}" --tone sepia -o refused.ppm
   bright=(--background 2,2,2 --exposure fixed)
   for tone in clip film; do
@@ -71,9 +71,14 @@ if "${run[@]}" render --help | grep -q glTF; then
     render model.obj depth_$tone.ppm "${bright[@]}" --tone $tone --aov depth >/dev/null
   done
   check clip_is_white test "$(first_pixel clip.ppm)" = ffffff
-  check film_is_not test "$(first_pixel film.ppm)" = f0f0f0
+  check film_is_not test "$(first_pixel film.ppm)" = fcfcfc
   check radiance_has_no_tone cmp -s clip.pfm film.pfm
   check depth_has_no_tone cmp -s depth_clip.ppm depth_film.ppm
+
+  # Goal: a level of quality asks for nothing that the scene ignores. Method: a model without lights, whose default lights
+  # cast the shadows; no note of a request without effect.
+  render model.obj high.ppm --quality high --environment studio >high.txt
+  check level_asks_for_nothing_in_vain bash -c '! grep "no effect" high.txt'
 
   # Goal: a black picture is explained in one line, which names the material where the file does. Method: a black triangle in
   # render, of a model, of what it bakes to and of a sequence; in view; not in a depth picture, nor the same in grey.

@@ -407,7 +407,7 @@ TEST_CASE("ggx_over_white_conserves_energy") {
 // Goal: the table of the share of uniform light that the lobe reflects is that share. Method: the mean of value ×
 // cosine / density over even samples, for F = 1 and for the rise alone, between the table's points.
 TEST_CASE("ggx_reflects_the_integral_of_its_value") {
-  constexpr int kSide = effort_side(60), kSteps = 15;
+  constexpr int kSide = 60, kSteps = effort_side(15);
   const BrdfInfo& ggx = *kBrdfList[kGgx];
   double worst = 0, squares = 0;
   for (int i = 0; i < kSteps; ++i)

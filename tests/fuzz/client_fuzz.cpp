@@ -58,7 +58,7 @@ const Bytes& picture_of(const FrameRequest& q) {
   CHECK(render_frame(renderer, q.seconds).ok);
   int line_bytes = static_cast<int>(kFuzzWidth * pixel_bytes(format));
   pixels.resize(static_cast<std::size_t>(line_bytes) * kFuzzHeight);
-  pack_rows(renderer->image.data, kFuzzWidth, kFuzzHeight, 0, kFuzzHeight, renderer->view.exposure,
+  pack_rows(renderer->image.data, kFuzzWidth, kFuzzHeight, 0, kFuzzHeight, display_of(*renderer),
             format == WireFormat::rgb565 ? kRgb565 : kRgb888, Rotation::none, false, pixels.data(), line_bytes);
   return pixels;
 }

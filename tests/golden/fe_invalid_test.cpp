@@ -56,7 +56,7 @@ void pack_everywhere(const Renderer& renderer) {
   std::vector<std::uint8_t> pixels(4 * renderer.image.count);
   for (const PixelFormat& format : {kXrgb8888, kRgb565, kRgb888})
     for (bool dither : {false, true})
-      pack_rows(renderer.image.data, width, height, 0, height, renderer.view.exposure, format, Rotation::none, dither,
+      pack_rows(renderer.image.data, width, height, 0, height, display_of(renderer), format, Rotation::none, dither,
                 pixels.data(), width * format.bits_per_pixel / 8);
 }
 

@@ -118,7 +118,7 @@ struct Device {
     if (expected.empty()) {
       REQUIRE(render_frame(own, 0.3 * second).ok);
       expected.resize(client.picture.pixels.count);
-      pack_rows(own->image.data, kWidth, kHeight, 0, kHeight, own->view.exposure, kRgb888, Rotation::none, false,
+      pack_rows(own->image.data, kWidth, kHeight, 0, kHeight, display_of(*own), kRgb888, Rotation::none, false,
                 expected.data(), kWidth * 3);
     }
     std::uint64_t begin = wall_ns();

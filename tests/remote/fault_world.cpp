@@ -67,7 +67,7 @@ const std::vector<std::uint8_t>& device_picture(const FaultPlan& plan, int secon
   int width = static_cast<int>(plan.width), height = static_cast<int>(plan.height);
   int line_bytes = width * static_cast<int>(pixel_bytes(plan.format));
   pixels.resize(static_cast<std::size_t>(line_bytes) * plan.height);
-  pack_rows(renderer->image.data, width, height, 0, height, renderer->view.exposure, small ? kRgb565 : kRgb888,
+  pack_rows(renderer->image.data, width, height, 0, height, display_of(*renderer), small ? kRgb565 : kRgb888,
             Rotation::none, plan.dither, pixels.data(), line_bytes);
   return pixels;
 }

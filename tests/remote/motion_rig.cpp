@@ -183,7 +183,7 @@ MotionResult run_motion(const MotionOptions& o) {
   renderer->pace = Pace();
   REQUIRE(render_frame(renderer, 0).ok);
   viewer.picture_merged = false;
-  pack_rows(renderer->image.data, viewer.width, viewer.height, 0, viewer.height, renderer->view.exposure, viewer.format,
+  pack_rows(renderer->image.data, viewer.width, viewer.height, 0, viewer.height, display_of(*renderer), viewer.format,
             Rotation::none, false, screen.page, screen.line_bytes);
   result.own_screen.assign(screen.page, screen.page + bytes);
   kRenderServers.stop(servers.get());

@@ -121,7 +121,7 @@ double SharedServer::device_rows_after(double seconds) {
     REQUIRE(render_frame(&device->renderer, &client, 0).ok);
     REQUIRE(render_frame(&whole->renderer, 0).ok);
     std::vector<std::uint8_t> alone(client.picture.pixels.count);
-    pack_rows(whole->renderer.image.data, 64, 48, 0, 48, whole->renderer.view.exposure, kRgb888, Rotation::none, false,
+    pack_rows(whole->renderer.image.data, 64, 48, 0, 48, display_of(whole->renderer), kRgb888, Rotation::none, false,
               alone.data(), 64 * 3);
     CHECK(std::equal(alone.begin(), alone.end(), client.picture.pixels.begin()));
     if (rig.now() < begin + ns * 3 / 4) continue;

@@ -59,7 +59,7 @@ std::vector<std::uint8_t> SplitRig::local_pixels(double seconds) {
   std::vector<std::uint8_t> pixels(client.picture.pixels.count);
   int width = static_cast<int>(options.width), height = static_cast<int>(options.height);
   bool small = options.client.format == WireFormat::rgb565;
-  pack_rows(renderer.image.data, width, height, 0, height, renderer.view.exposure, small ? kRgb565 : kRgb888,
+  pack_rows(renderer.image.data, width, height, 0, height, display_of(renderer), small ? kRgb565 : kRgb888,
             Rotation::none, options.client.dither, pixels.data(), width * (small ? 2 : 3));
   return pixels;
 }

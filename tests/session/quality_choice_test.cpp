@@ -2,6 +2,10 @@
 
 #include <doctest/doctest.h>
 #include <stdlib.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <fstream>
 
 #include "session/open_scene.h"
 #include "session/picture.h"
@@ -43,9 +47,33 @@ TEST_CASE("quality_leaves_settings_of_the_command_line") {
   CHECK(settings_with(o).indirect == IndirectChoice::automatic);
 }
 
-// Goal: a level asks for nothing that the scene ignores. Method: seesaw has no environment.
+// Goal: a level asks for nothing that the scene ignores. Method: seesaw has no environment; a model without lights has,
+// but the lights added cast the shadows, and without these the environment does.
 TEST_CASE("quality_asks_for_nothing_without_effect") {
   CHECK(settings_with(high()).environment_shadows == Quality().environment_shadows);
+#ifdef POCKETRAY_HAVE_IMPORT
+  char folder[] = "/tmp/pocketray-quality-XXXXXX";
+  REQUIRE(mkdtemp(folder) != nullptr);
+  CommonOptions o = high();
+  o.scene = std::string(folder) + "/model.obj", o.environment = "studio";
+  std::ofstream(o.scene) << "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 1\nf 1 2 3\nf 2 4 3\n";
+  CHECK(settings_with(o).environment_shadows == Quality().environment_shadows);
+  o.light = "none";
+  CHECK(settings_with(o).environment_shadows > Quality().environment_shadows);
+  CHECK(std::remove(o.scene.c_str()) == 0);
+  CHECK(rmdir(folder) == 0);
+#endif
+}
+
+// Goal: stated colours are shown as stated unless asked otherwise. Method: the tone of each name, and without one.
+TEST_CASE("tone_clips_unless_named") {
+  CommonOptions o = high();
+  CHECK(settings_with(o).tone == Tone::clip);
+  for (int i = 0; i < kToneCount; ++i) {
+    o.tone = kToneNames[i];
+    CHECK(settings_with(o).tone == static_cast<Tone>(i));
+  }
+  CHECK(Settings().tone == Tone::clip);
 }
 
 TEST_CASE("quality_must_be_a_level") {

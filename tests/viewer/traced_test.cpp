@@ -22,7 +22,7 @@ std::vector<std::uint8_t> expected_screen(const Stage& stage, const Renderer& re
   const Viewer& v = stage.viewer;
   const int bytes = v.format.bits_per_pixel / 8, line_bytes = stage.screen_width() * bytes;
   std::vector<std::uint8_t> page(static_cast<std::size_t>(line_bytes * stage.screen_height()));
-  pack_rows(renderer.image.data, v.width, v.height, 0, v.height, renderer.view.exposure, v.format, v.rotation,
+  pack_rows(renderer.image.data, v.width, v.height, 0, v.height, display_of(renderer), v.format, v.rotation,
             stage.dither, page.data(), line_bytes);
   for (int row = 0; dims && row < v.height; ++row) {
     for (int column = 0; column < v.width; ++column) {

@@ -37,7 +37,7 @@ std::vector<Bytes> frames_of(const char* name, WireFormat format, int count, flo
     REQUIRE(render_frame(&test->renderer, i / 25.0).ok);
     Bytes bytes(kWidth * kHeight * pixel_bytes(format));
     int width = static_cast<int>(kWidth), height = static_cast<int>(kHeight);
-    pack_rows(test->renderer.image.data, width, height, 0, height, test->renderer.view.exposure,
+    pack_rows(test->renderer.image.data, width, height, 0, height, display_of(test->renderer),
               format == WireFormat::rgb565 ? kRgb565 : kRgb888, Rotation::none, false, bytes.data(),
               width * static_cast<int>(pixel_bytes(format)));
     frames.push_back(bytes);

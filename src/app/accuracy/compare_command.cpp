@@ -39,7 +39,7 @@ Status read_development(const CompareOptions& o, const AnyPicture& reference, co
   development->measured = choice == ExposureChoice::measured;
   development->exposure = static_cast<double>(factor);
   development->aligned = o.align;
-  development->tone = o.tone == kToneNames[static_cast<int>(Tone::film)] ? Tone::film : Tone::clip;
+  if (!o.tone.empty()) development->tone = tone_named(o.tone.c_str());
   return success();
 }
 
@@ -142,7 +142,7 @@ void add_compare_command(Command program, int* exit_status) {
           "linear, middle grey.");
   command.add_option("--tone NAME", o->tone, "how linear light too bright for a display is shown")
       .one_of({kToneNames[0], kToneNames[1]})
-      .default_str(kToneNames[0])
+      .default_str(kToneNames[static_cast<int>(Development().tone)])
       .details("As --tone of render, beside whose pictures of levels the light is compared.");
   command.add_flag("--align", o->align, "scale the light of B to match A, and print the factor")
       .details("Of a single linear picture, finds the exposure.");

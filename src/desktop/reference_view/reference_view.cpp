@@ -197,7 +197,7 @@ std::uint32_t sample_count(const SideBySide& side_by_side) { return kSeedCount *
 const Vec3* picture_beside(SideBySide* side_by_side, const Renderer& renderer) {
   ReferenceView* view = view_of(side_by_side);
   std::uint32_t middle = view->width / 2;
-  float white = 1 / renderer.view.exposure;
+  const float white = 1000 / renderer.view.exposure;  // in every tone
   for (std::uint32_t y = 0; y < view->height; ++y) {
     std::uint32_t samples = view->samples + (y < view->row ? 1 : 0);
     for (std::uint32_t x = 0; x < view->width; ++x) {

@@ -116,7 +116,7 @@ const FrameShare& EncryptedRig::frame(double seconds) {
   Renderer& renderer = whole->renderer;
   REQUIRE(render_frame(&renderer, seconds).ok);
   std::vector<std::uint8_t> merged(client.picture.pixels.begin(), client.picture.pixels.end()), own(merged.size());
-  pack_rows(renderer.image.data, 64, 48, 0, 48, renderer.view.exposure, kRgb888, Rotation::none, false, own.data(),
+  pack_rows(renderer.image.data, 64, 48, 0, 48, display_of(renderer), kRgb888, Rotation::none, false, own.data(),
             64 * 3);
   CHECK(merged == own);
   return client.share;

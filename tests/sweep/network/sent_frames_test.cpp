@@ -26,7 +26,7 @@ AccuracyOptions small(const char* pixel_format) {
 
 Levels rendered(const Rig& rig, const Configuration& configuration) {
   const Renderer& r = rig.opened.renderer;
-  return displayed_levels(r.image.data, r.settings.width, r.settings.height, r.view.exposure,
+  return displayed_levels(r.image.data, r.settings.width, r.settings.height, display_of(r),
                           kOutputFormats[configuration.output]);
 }
 
