@@ -89,6 +89,9 @@ foreach(suite ${POCKETRAY_SUITES})
       set(cases "--test-case-exclude=client_takes_what_overlap*,server_shares_its_time*")  # depend on speed
     endif()
     add_test(NAME ${suite} COMMAND test_${suite} ${cases})
+    if(CMAKE_CROSSCOMPILING)  # seconds; twice the usual, for emulated CPUs beside other work
+      set_tests_properties(${suite} PROPERTIES TIMEOUT 3000)
+    endif()
     list(APPEND POCKETRAY_HARD_SUITES test_${suite})
   endif()
 endforeach()

@@ -99,7 +99,7 @@ int first_seed() {
 // shadows. The full gate has 10^4 meshes of up to 10^5 triangles; it takes hours, and POCKETRAY_SEED continues it.
 TEST_CASE("differential_degenerate_meshes_are_built_within_plan_and_answered_as_by_brute_force") {
   int mesh_count = gate_share(1000, 10000);
-  std::uint32_t count_max = whole_gate() ? 100000 : kEffortDivisor > 100 ? 100 : effort_side(2000);
+  std::uint32_t count_max = whole_gate() ? 100000 : kSoftFloats ? 100 : effort_side(2000);
   for (int seed = first_seed(); seed <= mesh_count; ++seed) {
     Mesh mesh = degenerate_mesh(static_cast<std::uint64_t>(seed), count_max);
     INFO("seed " << seed << ": " << mesh.name);

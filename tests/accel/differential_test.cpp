@@ -106,7 +106,7 @@ std::vector<Group> random_groups(Rng* rng, const Mesh& mesh, const World& oracle
   std::vector<Group> groups(static_cast<std::size_t>(count));
   for (int i = 0; i < count; ++i) {
     Group& group = groups[static_cast<std::size_t>(i)];
-    const int most = kEffortDivisor > 6 ? kGroupMax / 4 : kGroupMax;
+    const int most = kSoftFloats ? kGroupMax / 4 : kGroupMax;
     const int counts[] = {most, kGroupMax, 1 + static_cast<int>(next_u32(rng) % static_cast<unsigned>(most)), 1};
     group.rays = random_rays(rng, mesh, oracle.accel.bounds, counts[i % 4]);
     show_gate_progress(static_cast<std::uint64_t>(i), static_cast<std::uint64_t>(count));
@@ -147,7 +147,7 @@ int wrong_in_group(const Variant& variant, const World& world, const Group& grou
 // the triangles they hit, against closest hits of a filter without these.
 TEST_CASE("differential_every_variant_answers_as_brute_force") {
   for (const Mesh& mesh : generated_meshes()) {
-    if (effort(100) == 1 && mesh.triangles.size() > 1000) continue;  // brute force takes minutes under soft floats
+    if (kSoftFloats && mesh.triangles.size() > 1000) continue;  // brute force would take minutes
     auto oracle = make_world(mesh, &kBruteAccel);
     Rng rng = make_rng(101);
     std::vector<Group> groups = random_groups(&rng, mesh, *oracle, gate_share(96, 1500));

@@ -1,17 +1,22 @@
-// How much a test does: everything natively, a share under CPU or float emulation and in unoptimised builds, the least
-// under both, a larger share under a sanitizer.
+// How much a test does: everything natively, a share under CPU or float emulation and in unoptimised builds, a larger
+// share under a sanitizer.
 #pragma once
 
 namespace pocketray {
 
-#if defined(POCKETRAY_EMULATED) && defined(__SOFTFP__)
-constexpr int kEffortDivisor = 160;
-#elif defined(POCKETRAY_EMULATED) || !defined(__OPTIMIZE__)
+#if defined(POCKETRAY_EMULATED) || !defined(__OPTIMIZE__)
 constexpr int kEffortDivisor = 40;
 #elif defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 constexpr int kEffortDivisor = 6;
 #else
 constexpr int kEffortDivisor = 1;
+#endif
+
+// Floats and the CPU are both emulated: the longest tests do still less.
+#ifdef __SOFTFP__
+constexpr bool kSoftFloats = true;
+#else
+constexpr bool kSoftFloats = false;
 #endif
 
 // A number of rays, scenes or rounds, at least one.
