@@ -11,7 +11,8 @@ struct LevelMeaning {
   bool is_priced = false;    // on this machine, emulated or not; otherwise where the front was measured
 };
 
-// Reads the levels of a scene between load_scene() and plan_renderer(), for which `renderer` holds it.
+// Reads the levels of a scene between load_scene() and plan_renderer(), for which `renderer` holds it; adds the camera
+// and lights that it lacks.
 void find_levels(const std::string& scene, const SceneSource& source, Renderer* renderer,
                  LevelMeaning (&levels)[kQualityLevelCount]);
 

@@ -67,13 +67,17 @@ if "${run[@]}" render --help | grep -q glTF; then
   bright=(--background 2,2,2 --exposure fixed)
   for tone in clip film; do
     render model.obj $tone.ppm "${bright[@]}" --tone $tone >/dev/null
-    render model.obj $tone.pfm "${bright[@]}" --tone $tone >/dev/null
-    render model.obj depth_$tone.ppm "${bright[@]}" --tone $tone --aov depth >/dev/null
+    render model.obj $tone.pfm "${bright[@]}" --tone $tone >radiance_$tone.txt
+    render model.obj depth_$tone.ppm "${bright[@]}" --tone $tone --aov depth >depth_$tone.txt
   done
   check clip_is_white test "$(first_pixel clip.ppm)" = ffffff
   check film_is_not test "$(first_pixel film.ppm)" = fcfcfc
   check radiance_has_no_tone cmp -s clip.pfm film.pfm
   check depth_has_no_tone cmp -s depth_clip.ppm depth_film.ppm
+  for what in radiance depth; do
+    check ${what}_says_so grep -q -e '--tone has no effect' ${what}_film.txt
+    check ${what}_says_nothing_of_the_default bash -c "! grep -e --tone ${what}_clip.txt"
+  done
 
   # Goal: a level of quality asks for nothing that the scene ignores. Method: a model without lights, whose default lights
   # cast the shadows; no note of a request without effect.
