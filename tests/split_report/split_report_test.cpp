@@ -191,6 +191,27 @@ TEST_CASE("split_report_measures_maps_of_light") {
   CHECK(r.device->renderer.settings.indirect == settings.indirect);
 }
 
+// Goal: two servers are measured by effect, although only one of them is asked for light. Method: own light that costs
+// from little to more than the whole frame.
+TEST_CASE("split_report_measures_effects_of_two_servers") {
+  for (const double part : {0.1, 0.5, 1.0, 1.5}) {
+    CAPTURE(part);
+    Reporting r;
+    make_reporting(builtin_store(), "cube", "tablet", 2, &r);
+    Settings settings = r.device->renderer.settings;
+    settings.width = 64, settings.height = 48, settings.indirect = indirect_choice(Effect::instant_radiosity);
+    r.device = make_renderer(stored_scene(builtin_store(), "cube").scene, settings);
+    r.setup.device = &r.device->renderer;
+    r.setup.own_light_ns = part * r.setup.device_ns;
+    r.setup.frame_count = 2;
+    SplitFigures figures;
+    Progress progress = start_progress("effects", effect_frame_count(r.setup));
+    const Status status = measure_effects(r.setup, &progress, &figures);
+    REQUIRE_MESSAGE(status.ok, status.message);
+    CHECK(figures.effect.by_effect == doctest::Approx(1));
+  }
+}
+
 // Goal: a pixel with the device's own light costs something where frames can be shared by effect, and nothing is said
 // where they cannot.
 TEST_CASE("split_report_prices_own_light") {

@@ -4,7 +4,7 @@
 
 namespace pocketray {
 
-// Measures the first frame on one thread: the median of a few runs.
+// Measures the first frame on one thread: the shortest of several runs.
 Status measure_pixel_ns(Renderer* renderer, double* ns);
 
 // Measures frames shared by effect on the device: traced with its own indirect light, plus

@@ -20,8 +20,9 @@
 namespace pocketray {
 namespace {
 
-constexpr std::uint32_t kSettleFrames = 40;  // within which all servers must come into use
-constexpr std::uint32_t kSkippedFrames = 2;  // at the start of a lap
+constexpr std::uint32_t kSettleFrames = 40;         // within which all servers must come into use, ...
+constexpr std::uint64_t kSettleNs = 1'000'000'000;  // ... unless they take less than this simulated time
+constexpr std::uint32_t kSkippedFrames = 2;         // at the start of a lap
 constexpr std::uint32_t kChosenLaps = 2;
 constexpr double kPaperTransferNs = 400;  // T_t of [Aranha07] sec. 4
 constexpr int kRefinements = 2, kPaperRuns = 2, kPaperRows = 6;
@@ -119,8 +120,12 @@ Status next_frame(Experiment* e, bool* complete) {
 // Renders frames until all servers are in use and their speed and the link's are known.
 Status settle(Experiment* e, bool* complete) {
   *complete = true;
+  const std::uint64_t begin_ns = world_now_ns(e->world);
   for (std::uint32_t i = 0; *complete && !is_settled(e->client); ++i) {
-    if (i == kSettleFrames) return failure("the servers did not come into use within %u frames", kSettleFrames);
+    if (i >= kSettleFrames && world_now_ns(e->world) - begin_ns >= kSettleNs)
+      return failure(
+          "the servers did not come into use within %u frames of %.3g ms; choose a larger --size or a slower device", i,
+          1e-6 * static_cast<double>(world_now_ns(e->world) - begin_ns) / i);
     RETURN_IF_ERROR(next_frame(e, complete));
   }
   for (std::uint32_t i = 0; *complete && i < e->setup.frame_count; ++i) RETURN_IF_ERROR(next_frame(e, complete));

@@ -409,10 +409,15 @@ void end_client_frame(Client* client) {
 }
 
 bool is_settled(const Client& client) {
+  const bool is_lit = client.options.light.split == SplitKind::effect &&
+                      std::any_of(client.servers, client.servers + client.server_count, [](const RemoteServer& server) {
+                        return server.overture.phase == ServerPhase::ready;
+                      });
   for (std::uint32_t i = 0; i < client.server_count; ++i) {
     const RemoteServer& server = client.servers[i];
     if (server.overture.phase == ServerPhase::ready ||
-        (server.overture.phase == ServerPhase::waiting && server.overture.told))
+        (server.overture.phase == ServerPhase::waiting && server.overture.told) ||
+        (server.overture.phase == ServerPhase::probing && is_lit))
       continue;
     return false;
   }

@@ -200,7 +200,8 @@ void end_client_frame(Client* client);
 inline bool has_all_rows(const Client& client) { return is_complete(client.picture.merge); }
 // Longest work between polls of the link; shorter while an answer is timed.
 double work_ns_max(const Client& client);
-// True if every server is in use or waits for its next attempt after a logged failure.
+// True if every server is in use or waits for its next attempt after a logged failure. Of servers that only send light,
+// one is in use and the others are ready to follow it.
 bool is_settled(const Client& client);
 // True if a device without the scene should give up: for five seconds no row has come and no server with requests has
 // answered a ping, or no row has come for as long as a server may take to prepare its scene.
