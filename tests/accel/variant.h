@@ -6,6 +6,7 @@
 #include "accel/accel_world.h"
 #include "accel/bvh_kernels.h"
 #include "base/isa.h"
+#include "support/effort.h"
 
 namespace pocketray {
 
@@ -43,7 +44,8 @@ inline std::vector<Variant> all_variants() {
       list.push_back({info, best_isa(), true});
       continue;
     }
-    for (int isa = 0; isa <= static_cast<int>(best_isa()); ++isa)
+    // A build without floats in hardware has the kernels in integers alone.
+    for (int isa = 0; !kSoftFloats && isa <= static_cast<int>(best_isa()); ++isa)
       for (bool in_packets : {false, true}) list.push_back({info, static_cast<Isa>(isa), in_packets});
     for (bool in_packets : {false, true}) list.push_back({fixed_variant(info), best_isa(), in_packets});
   }

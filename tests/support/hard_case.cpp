@@ -91,7 +91,7 @@ REGISTER_LISTENER("hard cases", 1, GateListener);
 bool whole_gate() { return line_file() && requested_share() == 1; }
 
 int gate_share(int usual, int whole) {
-  if (!line_file()) return effort(usual);
+  if (!line_file()) return effort(kSoftFloats ? (usual + 3) / 4 : usual);
   return effort(std::max(std::min(usual, whole), static_cast<int>(whole * requested_share())));
 }
 
