@@ -243,8 +243,7 @@ void place_whole_shares(const FrameData& frame, const Emitter& e, const LampSlic
 // Places the points of shares that span several slices: each at the point of its own surface nearest to its centroid.
 // If the centroid lies on another share, as it may in a flat lamp, it is the point itself: flat lamps keep their
 // centre.
-void place_centroids(const FrameData& frame, const Lamp& lamp, double total, LightPoint* points) {
-  const std::uint32_t n = frame.settings.points_per_area_light;
+void place_centroids(const FrameData& frame, const Lamp& lamp, double total, std::uint32_t n, LightPoint* points) {
   const double area = total / n;
   // 1. Centroids.
   for (std::uint32_t i = 0; i < n; ++i) points[i].position = {0, 0, 0};
@@ -281,8 +280,8 @@ void place_centroids(const FrameData& frame, const Lamp& lamp, double total, Lig
 }
 
 // Places the points of shares that span several slices on the part of each share that the set's point stands for.
-void place_parts(const FrameData& frame, const Lamp& lamp, double total, const PointSet& set, LightPoint* points) {
-  const std::uint32_t n = frame.settings.points_per_area_light;
+void place_parts(const FrameData& frame, const Lamp& lamp, double total, std::uint32_t n, const PointSet& set,
+                 LightPoint* points) {
   const Vec2 place = rook_point(set.index, set.count);
   const double wanted = static_cast<double>(place.x);
   std::uint32_t share = kNone;
@@ -310,13 +309,13 @@ double lamp_area(const FrameData& frame, const Lamp& lamp) {
   return total;
 }
 
-std::uint32_t place_area_light(const FrameData& frame, const Lamp& lamp, const PointSet& set, LightPoint* points) {
-  const std::uint32_t n = frame.settings.points_per_area_light;
+std::uint32_t place_area_light(const FrameData& frame, const Lamp& lamp, std::uint32_t n, const PointSet& set,
+                               LightPoint* points) {
   CHECK(n >= 1 && n <= kPointsPerAreaLightMax);
   CHECK_LT(set.index, set.count);
   const double total = lamp_area(frame, lamp);
   if (!(total > 0)) return 0;
-  set.count == 1 ? place_centroids(frame, lamp, total, points) : place_parts(frame, lamp, total, set, points);
+  set.count == 1 ? place_centroids(frame, lamp, total, n, points) : place_parts(frame, lamp, total, n, set, points);
   each_slice(frame, lamp, total, n, [&](const Emitter& e, const LampSlice& slice) {
     if (slice.whole) place_whole_shares(frame, e, slice, total / n, set, points);
   });

@@ -14,8 +14,9 @@ struct PointSet {
   std::uint32_t index = 0, count = 1;
 };
 
-// Fills `points`, Settings::points_per_area_light of them, each with an equal share of the lamp's area; returns their
-// number, 0 without area. The mean of a flat lamp's points, over all sets, is its centre. Allocates nothing.
-std::uint32_t place_area_light(const FrameData& frame, const Lamp& lamp, const PointSet& set, LightPoint* points);
+// Fills `n` points, each with an equal share of the lamp's area; returns their number, 0 without area. The mean of a flat
+// lamp's points, over all sets, is its centre. Allocates nothing.
+std::uint32_t place_area_light(const FrameData& frame, const Lamp& lamp, std::uint32_t n, const PointSet& set,
+                               LightPoint* points);
 
 }  // namespace pocketray

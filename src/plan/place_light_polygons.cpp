@@ -8,6 +8,7 @@
 #include "plan/area_light.h"
 #include "shade/frame_data.h"
 #include "shade/lights.h"
+#include "shade/sample_points.h"
 
 namespace pocketray {
 namespace {
@@ -165,7 +166,7 @@ void place_light_polygons(Array<const Material> lamps, Array<LightPolygon> polyg
     any = any || is_polygon;
   });
   CHECK_EQ(i, count);
-  if (!any) return;
+  if (!any && !sees_few_points(frame->settings, frame->mask)) return;
   run.polygons = polygons.data;
   frame->lights.polygons = {polygons.data, count};
 }

@@ -97,8 +97,9 @@ void place_lights(Array<const Light> lights, Array<const Material> lamps, Array<
     if (!has(frame->mask, kind)) continue;
     std::uint32_t begin = count;
     if (kind == Effect::area_light) {
-      each_lamp(*frame->scene, lamps,
-                [&](const Lamp& lamp) { count += place_area_light(*frame, lamp, {}, points.data + count); });
+      each_lamp(*frame->scene, lamps, [&](const Lamp& lamp) {
+        count += place_area_light(*frame, lamp, frame->settings.points_per_area_light, {}, points.data + count);
+      });
     } else {
       for (std::uint32_t i = 0; i < lights.count; ++i) {
         if (effect_of(lights[i].kind) != kind) continue;
@@ -135,7 +136,12 @@ void place_sample_points(Array<const Material> lamps, Array<LightPoint> points, 
     std::copy_n(lights.points.data, run.begin, of_set);
     std::uint32_t end = run.begin;
     each_lamp(*frame->scene, lamps, [&](const Lamp& lamp) {
-      end += place_area_light(*frame, lamp, {set, sets}, of_set + end);
+      const std::uint32_t n = frame->settings.points_per_area_light,
+                          seen = points_of_lamp(frame->settings, frame->mask, 1);
+      if (place_area_light(*frame, lamp, seen, {set, sets}, of_set + end) == 0) return;
+      for (std::uint32_t i = seen; i < n; ++i)
+        of_set[end + i] = of_set[end + i % seen], of_set[end + i].intensity = {0, 0, 0};
+      end += n;
     });
     CHECK_EQ(end, lights.points.count);
   }

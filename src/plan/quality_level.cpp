@@ -42,7 +42,7 @@ Quality builtin_level(QualityLevel level, EffectMask effects) {
     case QualityLevel::medium:
       break;
     case QualityLevel::high:
-      q.edge_samples = 8, q.environment_shadows = 64, q.virtual_lights = 256;
+      q.edge_samples = 8, q.points_per_area_light = 16, q.environment_shadows = 64, q.virtual_lights = 256;
       break;
     case QualityLevel::best:
       q.samples_per_pixel = 16, q.environment_shadows = 128, q.virtual_lights = 512;

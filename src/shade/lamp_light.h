@@ -12,7 +12,7 @@ namespace pocketray {
 struct SeenLamp {
   const LightRun& run;
   const LightPolygon& polygon;
-  std::uint32_t first, end;  // its light points
+  std::uint32_t first, end;  // the light points that the sample sees
   const TilePolygon* tile;   // null: its tile knows nothing of it
   PolygonView view;
   Vec3 irradiance;  // of the whole lamp; set if the view is near
@@ -22,7 +22,7 @@ inline SeenLamp see_lamp(const Tracer& tracer, const LitSurface& to, const Light
   const std::uint32_t count = tracer.frame->settings.points_per_area_light, first = run.begin + lamp * count;
   const LightPolygon& polygon = run.polygons[lamp];
   const TilePolygon* tile = to.at_first_hit ? tile_polygon(tracer, lamp) : nullptr;
-  SeenLamp seen = {run, polygon, first, first + count, tile, {false, false, 0, 0}, {0, 0, 0}};
+  SeenLamp seen = {run, polygon, first, first + tracer.points_of_lamp, tile, {false, false, 0, 0}, {0, 0, 0}};
   if (tile)
     seen.view = tile->view[tracer.tile_pixel];
   else if (polygon.corner_count)
@@ -78,8 +78,7 @@ inline Visibility known_visibility(Tracer* tracer, const SeenLamp& lamp) {
   const bool blocked = lamp.tile->blocked[tracer->tile_pixel];
   if (!blocked && (kClear || !lamp.tile->open[tracer->tile_pixel])) return Visibility::unknown;
   effect_entered<Effect::shadow>();
-  if (!tracer->frame->lights.point_groups.groups.count)
-    tracer->rays[static_cast<int>(RayKind::shadow)] += lamp.end - lamp.first;
+  if (!is_grouped(*tracer)) tracer->rays[static_cast<int>(RayKind::shadow)] += lamp.end - lamp.first;
   return blocked ? Visibility::none : Visibility::full;
 }
 

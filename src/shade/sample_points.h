@@ -30,9 +30,27 @@ inline const LightPoint* points_of_sample(const FrameData& frame, std::uint32_t 
   return points_of_sample(frame, sample, frame.lights.points, frame.lights.sample_points);
 }
 
+// Number of points of a lamp that a sample sees. Samples at an edge, beside their pixel's centre, see few; the others
+// of their lamp's points send no light.
+constexpr std::uint32_t kEdgePoints = 4;
+constexpr bool sees_few_points(const Settings& settings, EffectMask mask) {
+  return has(mask, Effect::edge_sampling) && !has(mask, Effect::source_selection) && settings.samples_per_pixel == 1 &&
+         settings.points_per_area_light > kEdgePoints;
+}
+constexpr std::uint32_t points_of_lamp(const Settings& settings, EffectMask mask, std::uint32_t sample) {
+  return sample > 0 && sees_few_points(settings, mask) ? kEdgePoints : settings.points_per_area_light;
+}
+
+// Returns whether the sample being traced sees all of its lamps' points, in groups.
+inline bool is_grouped(const Tracer& tracer) {
+  const PointGroups& groups = tracer.frame->lights.point_groups;
+  return groups.groups.count > 0 && tracer.points_of_lamp == groups.points_of_light;
+}
+
 // Has the tracer use the points of a sample from now on.
 inline void use_points_of(Tracer* tracer, std::uint32_t sample) {
   const LightPoint* points = points_of_sample(*tracer->frame, sample);
+  tracer->points_of_lamp = points_of_lamp(tracer->frame->settings, tracer->frame->mask, sample);
   if (points == tracer->light_points) return;
   tracer->light_points = points;
   tracer->tested_points.first = ~0u;

@@ -11,6 +11,7 @@
 #include "shade/lights.h"
 #include "shade/media.h"
 #include "shade/point_groups.h"
+#include "shade/sample_points.h"
 #include "shade/surface.h"
 #include "shade/texture.h"
 #include "shade/tile_shadows.h"
@@ -160,7 +161,7 @@ template <EffectMask mask>
   const FrameData& frame = *tracer->frame;
   const LightPoint* emitter = emitter_of(tracer->light_points[light]);
   bool blocked = false;
-  if (!passes && emitter && frame.lights.point_groups.groups.count) {
+  if (!passes && emitter && is_grouped(*tracer)) {
     --tracer->rays[static_cast<int>(RayKind::shadow)];  // is_point_blocked() counts its own rays
     blocked = is_point_blocked(tracer, s, light, at_first_hit);
     passes = true;

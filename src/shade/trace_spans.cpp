@@ -101,6 +101,7 @@ Tracer make_tracer(const FrameData& frame) {
   Tracer tracer;
   tracer.frame = &frame;
   tracer.light_points = frame.lights.points.data;
+  tracer.points_of_lamp = frame.settings.points_per_area_light;
   return tracer;
 }
 

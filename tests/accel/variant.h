@@ -44,9 +44,9 @@ inline std::vector<Variant> all_variants() {
       list.push_back({info, best_isa(), true});
       continue;
     }
-    // A build without floats in hardware has the kernels in integers alone.
-    for (int isa = 0; !kSoftFloats && isa <= static_cast<int>(best_isa()); ++isa)
+    for (int isa = 0; isa <= static_cast<int>(best_isa()); ++isa)
       for (bool in_packets : {false, true}) list.push_back({info, static_cast<Isa>(isa), in_packets});
+    if (kSoftFloats) continue;  // these kernels are in integers already
     for (bool in_packets : {false, true}) list.push_back({fixed_variant(info), best_isa(), in_packets});
   }
   return list;
