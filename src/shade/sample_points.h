@@ -35,7 +35,7 @@ inline const LightPoint* points_of_sample(const FrameData& frame, std::uint32_t 
 constexpr std::uint32_t kEdgePoints = 4;
 constexpr bool sees_few_points(const Settings& settings, EffectMask mask) {
   return has(mask, Effect::edge_sampling) && !has(mask, Effect::source_selection) && settings.samples_per_pixel == 1 &&
-         settings.points_per_area_light > kEdgePoints;
+         settings.points_per_area_light > kEdgePoints && settings.area_irradiance != AreaIrradiance::points;
 }
 constexpr std::uint32_t points_of_lamp(const Settings& settings, EffectMask mask, std::uint32_t sample) {
   return sample > 0 && sees_few_points(settings, mask) ? kEdgePoints : settings.points_per_area_light;

@@ -45,7 +45,10 @@ expect plan_has_the_dial_as_json 0 '"level": "best"' plan cornell --json -
 # Goal: where the scene's front was measured, levels are its points. Method: a front of two candidates in the cache; the
 # picture of each by name.
 if "${run[@]}" --help | grep -q '^ *accuracy '; then
-  "${run[@]}" accuracy cube --size 16x12 --threads 2 --reference-samples 2 --rounds 1 -o sweep >/dev/null 2>&1
+  for i in 1 2 3; do  # beside other work, the most accurate settings may also be the fastest: no front
+    "${run[@]}" accuracy cube --size 16x12 --threads 2 --reference-samples 2 --rounds 1 -o "sweep$i" >/dev/null 2>&1
+    ! ls "$XDG_CACHE_HOME"/pocketray/*-2.front >/dev/null 2>&1 || break
+  done
   front=$(ls "$XDG_CACHE_HOME"/pocketray/*.front | grep -v -e '-2.front')
   expect plan_knows_the_prices_of_this_machine 0 'priced_here": true' plan cube --threads 2 --json -
   expect plan_says_that_prices_are_of_another 0 'with times of another machine or number of threads' plan cube --threads 1

@@ -180,7 +180,7 @@ assert all(f[k] for k in ("energy_front", "price_front"))
 assert [row["clients"] for row in f["one_server_many_clients"]] == [1, 2, 3, 4, 6, 8, 12, 16]'
     fi
     expect split_report_device 1 'gp2x' split-report cube --emulate toaster
-    expect split_report_fast_device 1 'did not come into use .* larger --size' "${report[@]}" --device-ns 20
+    expect split_report_fast_device 1 'did not come into use .* larger --size' split-report cube --size 64x48 --device-ns 20
     expect split_report_no_server 1 'servers' "${report[@]}" --servers 0
     expect split_report_many_servers 1 'servers' "${report[@]}" --servers 9
     "${run[@]}" split-report cube --device-ns 5000 --server-ns 500 --frames 100 >/dev/null 2>interrupted.err &
