@@ -99,6 +99,7 @@ Status bake(const BakeOptions& o) {
   std::uint64_t start = clock_ns();
   HeapScene heap;
   ModelOptions model = o.model;
+  model.tells_halved = true;
   model.mip_maps = !o.no_mip_maps, model.studio = o.environment.empty();
   model.animations = o.animation != kNoAnimation;
   RETURN_IF_ERROR(read_heap_scene(o.input, model, &heap));

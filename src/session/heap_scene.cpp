@@ -20,6 +20,7 @@ Status read_heap_scene(const std::string& name, const ModelOptions& options, Hea
   ImportOptions import_options;
   import_options.texture_side_max = options.texture_side_max;
   import_options.mip_maps = options.mip_maps;
+  import_options.tells_halved = options.tells_halved;
   apply(options.reading, &import_options);
   import_options.animations = options.animations;
   RETURN_IF_ERROR(import_model(name, import_options, &result->imported, options.studio));

@@ -23,6 +23,7 @@ struct HeapScene {
 struct ModelOptions {
   std::uint32_t texture_side_max = 512;
   bool mip_maps = true;
+  bool tells_halved = false;  // see ImportOptions
   bool studio = true;  // for models that call for one
   ReadingChoice reading;
   bool animations = true;

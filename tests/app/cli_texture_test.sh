@@ -26,6 +26,9 @@ view=(--size 64x48 --threads 2 --camera "0,1.5,9 0,0,0 0,1,0 50")
 # Goal: mip maps are stored unless told otherwise, and add a third; the picture shows them, and the plan says so.
 expect bake_levels 0 '1 texture,' bake floor.obj -o levels.pray
 expect bake_no_levels 0 '1 texture,' bake floor.obj -o plain.pray --no-mip-maps
+expect bake_tells_that_it_halves 0 '1 texture halved to at most 64 texels a side .--texture-max' bake floor.obj -o coarse.pray --texture-max 64
+check bake_does_not_tell_otherwise test "$("${run[@]}" bake floor.obj -o levels.pray 2>&1 | grep -c halved)" = 0
+check render_does_not_tell test "$("${run[@]}" render floor.obj "${view[@]}" -o seen.ppm 2>&1 | grep -c halved)" = 0
 check levels_take_a_third [ $(($(size levels.pray) - $(size plain.pray))) -ge 21000 ]
 check levels_take_no_more [ $(($(size levels.pray) - $(size plain.pray))) -le 22000 ]
 expect plan_levels 0 'mip-map +on +1 of 1 materials' plan levels.pray

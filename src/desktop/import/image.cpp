@@ -157,9 +157,15 @@ void shrink_image(Image* image, std::uint32_t side_max, TexelKind kind) {
   while (image->width > side_max || image->height > side_max) *image = halved(*image, kind);
 }
 
+void fit_image(SceneBuilder* builder, Image* image, TexelKind kind) {
+  const std::uint32_t side_max = builder->options.texture_side_max;
+  builder->halved_count += image->width > side_max || image->height > side_max;
+  shrink_image(image, side_max, kind);
+}
+
 TexelRun add_texels(SceneBuilder* builder, Image image, TexelKind kind, bool has_levels) {
   SceneArrays& out = *builder->out;
-  shrink_image(&image, builder->options.texture_side_max, kind);
+  fit_image(builder, &image, kind);
   const std::uint32_t level_count =
       builder->options.mip_maps && has_levels ? level_count_max(image.width, image.height) : 1;
   const std::uint64_t begin = out.texels.size(), count = level_texels(image.width, image.height, level_count);

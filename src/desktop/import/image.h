@@ -24,6 +24,8 @@ Status read_image(const Bytes& bytes, const std::string& name, std::size_t pixel
 // Box-halves width and height until neither exceeds `side_max`: colours in linear light, weighted by alpha. Odd sides
 // round up.
 void shrink_image(Image* image, std::uint32_t side_max, TexelKind kind = TexelKind::colors);
+// Shrinks an image to options.texture_side_max, and counts it if it was larger.
+void fit_image(SceneBuilder* builder, Image* image, TexelKind kind = TexelKind::colors);
 
 // Texels of an image in the scene; several textures may sample them differently.
 struct TexelRun {

@@ -291,6 +291,10 @@ void finish_scene(SceneBuilder* builder, const std::string& name, ImportedScene*
   }
   if (out.materials.empty()) out.materials.emplace_back();
   decide_glass(builder);
+  if (builder->options.tells_halved && builder->halved_count > 0)
+    note_remark(builder, std::to_string(builder->halved_count) +
+                             (builder->halved_count == 1 ? " texture" : " textures") + " halved to at most " +
+                             std::to_string(builder->options.texture_side_max) + " texels a side (--texture-max)");
   std::size_t count = out.positions.size();
   if (!out.normals.empty()) out.normals.resize(count, Vec3{0, 0, 0});
   auto any_textured = [](const auto& entries) {

@@ -88,6 +88,7 @@ struct SceneBuilder {
   std::uint64_t bytes_charged = 0;
   FilesRead files;
   std::uint64_t broken_face_count = 0;  // faces left out
+  std::uint32_t halved_count = 0;       // textures with more texels than options.texture_side_max
   std::vector<std::string> unused;      // contents of the file that are not used
   std::vector<std::string> remarks;     // simplifications and repairs
 };
