@@ -60,6 +60,16 @@ void make_reporting(const SceneStore& store, const char* scene, const char* devi
   r->setup.line.bytes_per_second = static_cast<std::uint64_t>(device->link_bytes_per_second / widths);
 }
 
+// Renders with instant radiosity, of which the device's own share takes this part of a frame's time.
+void share_by_effect(const char* scene, std::uint32_t width, std::uint32_t height, double own_part, Reporting* r) {
+  Settings settings = r->device->renderer.settings;
+  settings.width = width, settings.height = height;
+  settings.indirect = indirect_choice(Effect::instant_radiosity);
+  r->device = make_renderer(stored_scene(builtin_store(), scene).scene, settings);
+  r->setup.device = &r->device->renderer;
+  r->setup.own_light_ns = own_part * r->setup.device_ns;
+}
+
 }  // namespace
 
 // Goal: a frame with the chosen split takes at most 5 % longer than with the best fixed share, and the network makes
@@ -133,18 +143,15 @@ TEST_CASE("split_report_prices_preparation") {
 TEST_CASE("split_report_measures_effects") {
   Reporting r;
   make_reporting(builtin_store(), "cornell", "tablet", 1, &r);
-  Settings settings = r.device->renderer.settings;
-  settings.width = 64, settings.height = 60, settings.indirect = indirect_choice(Effect::instant_radiosity);
-  r.device = make_renderer(stored_scene(builtin_store(), "cornell").scene, settings);
-  r.setup.device = &r.device->renderer;
-  r.setup.own_light_ns = 0.55 * r.setup.device_ns;
+  share_by_effect("cornell", 64, 60, 0.55, &r);
+  const IndirectChoice indirect = r.device->renderer.settings.indirect;
   r.setup.line.bytes_per_second = static_cast<std::uint64_t>(0.6e9 / r.setup.device_ns);
   r.setup.frame_count = 8;
   SplitFigures figures;
   Progress progress = start_progress("split", split_frame_count(r.setup, kSteps));
   REQUIRE(measure_split(r.setup, kSteps, &progress, &figures).ok);
   REQUIRE(measure_effects(r.setup, &progress, &figures).ok);
-  CHECK(r.device->renderer.settings.indirect == settings.indirect);
+  CHECK(r.device->renderer.settings.indirect == indirect);
   const SplitPoint &effect = figures.effect, &both = figures.both;
   std::printf("best rows %.1f ns per pixel, by effect %.1f, both %.1f, %.2f of the frames by effect\n",
               figures.best.ns_per_pixel, effect.ns_per_pixel, both.ns_per_pixel, both.by_effect);
@@ -160,17 +167,14 @@ TEST_CASE("split_report_measures_effects") {
 TEST_CASE("split_report_measures_maps_of_light") {
   Reporting r;
   make_reporting(builtin_store(), "cornell", "tablet", 1, &r);
-  Settings settings = r.device->renderer.settings;
-  settings.width = 64, settings.height = 48, settings.indirect = indirect_choice(Effect::instant_radiosity);
-  r.device = make_renderer(stored_scene(builtin_store(), "cornell").scene, settings);
-  r.setup.device = &r.device->renderer;
-  r.setup.own_light_ns = 0.5 * r.setup.device_ns;
+  share_by_effect("cornell", 64, 48, 0.5, &r);
+  const IndirectChoice indirect = r.device->renderer.settings.indirect;
   r.setup.frame_count = 8;
   const Vec3 eye = r.device->renderer.view.camera.eye;
   SplitFigures figures;
   Progress progress = start_progress("maps", light_frame_count(r.setup));
   REQUIRE(measure_light(r.setup, &progress, &figures).ok);
-  CHECK(r.device->renderer.settings.indirect == settings.indirect);
+  CHECK(r.device->renderer.settings.indirect == indirect);
   CHECK(r.device->renderer.view.camera.eye == eye);
   REQUIRE(figures.light.size() == 5);
   const LightMapPoint &own = figures.light[0], &each = figures.light[1];
@@ -188,7 +192,7 @@ TEST_CASE("split_report_measures_maps_of_light") {
   interrupted = false;
   CHECK(status.ok);
   CHECK(none.light.empty());
-  CHECK(r.device->renderer.settings.indirect == settings.indirect);
+  CHECK(r.device->renderer.settings.indirect == indirect);
 }
 
 // Goal: two servers are measured by effect, although only one of them is asked for light. Method: own light that costs
@@ -198,11 +202,7 @@ TEST_CASE("split_report_measures_effects_of_two_servers") {
     CAPTURE(part);
     Reporting r;
     make_reporting(builtin_store(), "cube", "tablet", 2, &r);
-    Settings settings = r.device->renderer.settings;
-    settings.width = 64, settings.height = 48, settings.indirect = indirect_choice(Effect::instant_radiosity);
-    r.device = make_renderer(stored_scene(builtin_store(), "cube").scene, settings);
-    r.setup.device = &r.device->renderer;
-    r.setup.own_light_ns = part * r.setup.device_ns;
+    share_by_effect("cube", 64, 48, part, &r);
     r.setup.frame_count = 2;
     SplitFigures figures;
     Progress progress = start_progress("effects", effect_frame_count(r.setup));
