@@ -146,9 +146,7 @@ std::uint32_t light_polygon_count(const Scene& scene, EffectMask mask) {
 void place_light_polygons(Array<const Material> lamps, Array<LightPolygon> polygons, FrameData* frame) {
   CHECK(frame != nullptr);
   frame->lights.polygons = {};
-  if (frame->settings.area_irradiance == AreaIrradiance::points || frame->lights.run_count == 0 ||
-      has(frame->mask, Effect::source_selection))
-    return;
+  if (!takes_lamps_whole(frame->settings, frame->mask) || frame->lights.run_count == 0) return;
   LightRun& run = frame->lights.runs[frame->lights.run_count - 1];
   if (run.sample != find_light_sampler(Effect::area_light)) return;
   const std::uint32_t n = frame->settings.points_per_area_light;

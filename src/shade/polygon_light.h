@@ -9,6 +9,12 @@ namespace pocketray {
 
 constexpr float kPolygonNear = 16;
 
+// Returns whether the light of each lamp is calculated by itself: in closed form or over the points that a sample sees.
+// Otherwise, each point is a light of its own.
+constexpr bool takes_lamps_whole(const Settings& settings, EffectMask mask) {
+  return settings.area_irradiance != AreaIrradiance::points && !has(mask, Effect::source_selection);
+}
+
 // A polygon as a surface sees it.
 struct PolygonView {
   bool is_near;       // false: nothing else is set

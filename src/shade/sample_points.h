@@ -2,6 +2,7 @@
 // see a penumbra as 16 points do. The centre of a pixel with samples at edges has the points of pixels without.
 #pragma once
 #include "shade/frame_data.h"
+#include "shade/polygon_light.h"
 #include "shade/tracer.h"
 
 namespace pocketray {
@@ -34,8 +35,8 @@ inline const LightPoint* points_of_sample(const FrameData& frame, std::uint32_t 
 // of their lamp's points send no light.
 constexpr std::uint32_t kEdgePoints = 4;
 constexpr bool sees_few_points(const Settings& settings, EffectMask mask) {
-  return has(mask, Effect::edge_sampling) && !has(mask, Effect::source_selection) && settings.samples_per_pixel == 1 &&
-         settings.points_per_area_light > kEdgePoints && settings.area_irradiance != AreaIrradiance::points;
+  return has(mask, Effect::edge_sampling) && settings.samples_per_pixel == 1 && takes_lamps_whole(settings, mask) &&
+         settings.points_per_area_light > kEdgePoints;
 }
 constexpr std::uint32_t points_of_lamp(const Settings& settings, EffectMask mask, std::uint32_t sample) {
   return sample > 0 && sees_few_points(settings, mask) ? kEdgePoints : settings.points_per_area_light;
