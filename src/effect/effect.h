@@ -44,8 +44,9 @@ enum class Effect : std::uint8_t {
   transmission_map,
   rough_refraction,
   iridescence,
+  diffuse_transmission,
 };
-constexpr int kEffectCount = 39;
+constexpr int kEffectCount = 40;
 
 using EffectMask = std::uint64_t;
 constexpr EffectMask bit(Effect effect) { return EffectMask(1) << static_cast<int>(effect); }

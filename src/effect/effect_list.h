@@ -85,6 +85,9 @@ constexpr EffectRow kEffectList[kEffectCount] = {
     {Effect::transmission_map, "transmission-map", "a material that transmits light, with textures"},
     {Effect::rough_refraction, "rough-refraction", "a rough material that transmits light, such as frosted glass"},
     {Effect::iridescence, "iridescence", "a material under a thin film, such as a soap bubble"},
+    {Effect::diffuse_transmission, "diffuse-transmission",
+     "a thin material that light passes diffusely, such as a leaf", Reads::own_pixel, Followed::by_rays, Shared::rows,
+     0, "light also passes surfaces from their other side"},
 };
 
 // Returns the effects with the value in the column.

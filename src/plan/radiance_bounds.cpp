@@ -13,6 +13,7 @@
 #include "brdf/linear_lobe.h"
 #include "brdf/sheen.h"
 #include "indirect/environment.h"
+#include "scene/diffuse_transmission.h"
 #include "scene/metallic_roughness.h"
 #include "shade/dielectric.h"
 #include "shade/frame_data.h"
@@ -49,6 +50,10 @@ MaterialBound material_bound(const FrameData& frame, std::uint32_t index) {
     if (!is_zero(m.specular)) m.specular = {1, 1, 1};
     if (!is_zero(m.mirror)) m.mirror = {1, 1, 1};
   }
+  const DiffuseTransmission* passing =
+      has(frame.mask, Effect::diffuse_transmission) ? diffuse_transmission_of(scene, index) : nullptr;
+  const Vec3 passed = passing ? passing->color * passing->strength : Vec3{0, 0, 0};
+  m.diffuse += passed;  // likewise: it comes from both sides
   const bool shines = m.unlit && has(frame.mask, Effect::emission);
   MaterialBound bound;
   bound.own = max_component(m.emission) + (shines ? max_component(m.diffuse) : indirect_bound(scene, m, frame.mask));
@@ -63,7 +68,7 @@ MaterialBound material_bound(const FrameData& frame, std::uint32_t index) {
   bound.passed = max_component(m.mirror);
   if (!is_zero(m.transmission)) bound.passed += max_component(max(m.transmission, Vec3{1, 1, 1}));
   if (coat) bound.passed += coat->strength * coat_mirror_share(coat->roughness_low);
-  float f = diffuse / kPiF;
+  float f = std::max(diffuse, max_component(passed)) / kPiF;  // each light is on one side
   CHECK_LT(m.brdf, kBrdfCount);
   const BrdfInfo* lobe = kBrdfList[m.brdf];
   if (has(frame.mask, Effect::anisotropy) && has_grain(scene, index)) lobe = lobe->with_grain;

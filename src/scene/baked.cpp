@@ -22,6 +22,7 @@ static_assert(sizeof(MetallicRoughness) == 28 && sizeof(MaterialMaps) == 28 + 5 
 static_assert(sizeof(Grain) == 8 + 28 && sizeof(Sheen) == 12 + 2 * 4 + 2 * 28 && sizeof(PackedTangent) == 4,
               "no padding");
 static_assert(sizeof(GlassMap) == 2 * 4 + 2 * 28 && sizeof(Iridescence) == 4 * 4 + 2 * 28, "no padding");
+static_assert(sizeof(DiffuseTransmission) == 4 + 12 + 2 * 28, "no padding");
 static_assert(sizeof(Light) == 4 + 3 * 12 + 3 * 4 + 4 && sizeof(Camera) == 3 * 12 + 4 * 4, "no padding");
 static_assert(sizeof(Node) == 4 + 12 + 16 + 12 + 8 && sizeof(Animation) == 12, "no padding");
 static_assert(sizeof(Channel) == 4 * 4 + 2 + 2 && sizeof(Joint) == 4 + 48 && sizeof(Skin) == 8, "no padding");
@@ -111,8 +112,9 @@ void for_each_array(SceneType& scene, Visit visit) {
   visit("iridescences", scene.iridescences);
   visit("camera_near", scene.camera_near);
   visit("environment_suns", scene.environment_suns);
+  visit("diffuse_transmissions", scene.diffuse_transmissions);
 }
-constexpr std::uint32_t kArrayCount = 51;
+constexpr std::uint32_t kArrayCount = 52;
 constexpr std::uint32_t kSectionCount = 1 + kArrayCount;  // kind 0 is SceneInfo
 
 constexpr std::uint64_t aligned(std::uint64_t offset) {
@@ -134,6 +136,7 @@ constexpr std::uint32_t section_count_of(std::uint32_t version) {
          : version < 17 ? 46
          : version < 18 ? 47
          : version < 19 ? 48
+         : version < 20 ? 52
                         : kSectionCount;
 }
 

@@ -10,7 +10,7 @@
 
 namespace pocketray {
 
-constexpr std::uint32_t kBakedVersion = 19;    // as written
+constexpr std::uint32_t kBakedVersion = 20;    // as written
 constexpr std::uint32_t kBakedVersionMin = 7;  // oldest readable version; it has no environment, grains or tangents
 
 // Size in bytes of the file that baked_write() makes.

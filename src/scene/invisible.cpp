@@ -232,6 +232,12 @@ bool shows_film(const Scene& scene, const Iridescence& film) {
   return film.strength_texture.texture == kNone || !is_without_red(scene, film.strength_texture);
 }
 
+bool shows_diffuse_transmission(const Scene& scene, const DiffuseTransmission& passing) {
+  if (!(passing.strength > 0)) return false;
+  return passing.strength_texture.texture == kNone ||
+         !every_texel(scene, passing.strength_texture, [](const Texel& t) { return t.a == 0; });
+}
+
 bool shows_grain(const Scene& scene, const Grain& grain) {
   if (grain.direction.x == 0 && grain.direction.y == 0) return false;
   return grain.texture.texture == kNone || !every_texel(scene, grain.texture, [](const Texel& t) { return t.b == 0; });

@@ -19,6 +19,7 @@ bool shows_background(const Scene& scene, std::uint32_t material);
 bool shows_coat(const Scene& scene, const ClearCoat& coat);
 bool shows_sheen(const Scene& scene, const Sheen& sheen);
 bool shows_film(const Scene& scene, const Iridescence& film);
+bool shows_diffuse_transmission(const Scene& scene, const DiffuseTransmission& passing);
 bool shows_grain(const Scene& scene, const Grain& grain);
 // Returns whether a normal texture leans normals anywhere.
 bool shows_normal_map(const Scene& scene, const TextureUse& normal, float scale);

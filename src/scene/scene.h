@@ -164,6 +164,13 @@ struct Iridescence {
   TextureUse strength_texture, thickness_texture;
 };
 
+// Light that passes a thin surface diffusely, as through a leaf, see shade/diffuse_transmission.h.
+struct DiffuseTransmission {
+  float strength = 0;      // × alpha; 0: none. Of the diffuse lobe, the rest remains
+  Vec3 color = {1, 1, 1};  // × colour texture, not × texture and vertex colour of the material
+  TextureUse strength_texture, color_texture;
+};
+
 // A unit vector in 127ths; zero: none. Handedness: above 0, the bitangent is normal × tangent, below 0 its opposite; 0:
 // by the first texture coordinates, against ∂P/∂v.
 struct PackedTangent {
@@ -330,8 +337,9 @@ enum class Invisible : std::uint32_t {
   black_grain,
   black_sheen,
   black_film,
+  opaque_leaf,
 };
-constexpr int kInvisibleCount = 20;
+constexpr int kInvisibleCount = 21;
 inline Invisible dark_light(LightKind kind) { return static_cast<Invisible>(9 + static_cast<int>(kind)); }
 inline Invisible distant_light(LightKind kind) { return static_cast<Invisible>(12 + static_cast<int>(kind)); }
 static_assert(static_cast<int>(Invisible::dark_point) == 9 && static_cast<int>(Invisible::distant_point) == 12,
@@ -393,10 +401,11 @@ struct Scene {
   Array<const Sheen> sheens;                     // one per material, or empty
   // One for each animation and one at time 0; or one; or none: measured at the start if needed.
   Array<const Framing> framings;
-  Array<const GlassMap> glass_maps;              // one per material, or empty
-  Array<const Iridescence> iridescences;         // likewise
-  Array<const float> camera_near;                // near planes' distances, one per camera; or none: all 0
-  Array<const EnvironmentSun> environment_suns;  // of the environment, or none
+  Array<const GlassMap> glass_maps;                        // one per material, or empty
+  Array<const Iridescence> iridescences;                   // likewise
+  Array<const float> camera_near;                          // near planes' distances, one per camera; or none: all 0
+  Array<const EnvironmentSun> environment_suns;            // of the environment, or none
+  Array<const DiffuseTransmission> diffuse_transmissions;  // one per material, or empty
 };
 
 inline bool is_animated(const Scene& scene) {

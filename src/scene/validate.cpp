@@ -269,6 +269,7 @@ Status validate_scene(const Scene& scene) {
   RETURN_IF_ERROR(validate_clear_coats(scene));
   RETURN_IF_ERROR(validate_sheens(scene));
   RETURN_IF_ERROR(validate_iridescences(scene));
+  RETURN_IF_ERROR(validate_diffuse_transmissions(scene));
   RETURN_IF_ERROR(validate_lights_and_cameras(scene));
   RETURN_IF_ERROR(validate_default_view(scene));
   RETURN_IF_ERROR(validate_framings(scene));

@@ -69,6 +69,7 @@ Status validate_clear_coats(const Scene& scene);
 Status validate_sheens(const Scene& scene);
 Status validate_glass_maps(const Scene& scene);
 Status validate_iridescences(const Scene& scene);
+Status validate_diffuse_transmissions(const Scene& scene);
 Status check_texture_use(const char* array, const char* field, std::uint32_t index, const TextureUse& use,
                          const Scene& scene);
 Status validate_lights_and_cameras(const Scene& scene);

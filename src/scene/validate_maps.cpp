@@ -189,6 +189,28 @@ Status validate_iridescences(const Scene& scene) {
   return validate_each("iridescences", scene.iridescences.count, scene, validate_iridescence);
 }
 
+static Status validate_diffuse_transmission(const Scene& scene, std::uint32_t index) {
+  CHECK_LT(index, scene.diffuse_transmissions.count);
+  const DiffuseTransmission& passing = scene.diffuse_transmissions[index];
+  const FieldRange fields[] = {
+      {"strength", passing.strength, 0, 1},
+      {"color.x", passing.color.x, 0, 1},
+      {"color.y", passing.color.y, 0, 1},
+      {"color.z", passing.color.z, 0, 1},
+  };
+  RETURN_IF_ERROR(check_fields("diffuse_transmissions", index, fields));
+  if (passing.strength > 0 && scene.materials[index].unlit)
+    return failure("diffuse_transmissions[%u] belongs to materials[%u], which is unlit", index, index);
+  return check_texture_uses(
+      "diffuse_transmissions", index, scene,
+      {{"strength_texture", &passing.strength_texture}, {"color_texture", &passing.color_texture}});
+}
+
+Status validate_diffuse_transmissions(const Scene& scene) {
+  return validate_each("diffuse_transmissions", scene.diffuse_transmissions.count, scene,
+                       validate_diffuse_transmission);
+}
+
 Status validate_material_maps(const Scene& scene) {
   return validate_each("material_maps", scene.material_maps.count, scene, validate_maps);
 }

@@ -55,6 +55,10 @@ std::map<std::uint32_t, Uses> find_uses(const Scene& scene) {
   for (const Iridescence& film : scene.iridescences) {
     note(film.strength_texture, &Uses::red), note(film.thickness_texture, &Uses::green_blue);
   }
+  for (const DiffuseTransmission& passing : scene.diffuse_transmissions) {
+    note(passing.strength_texture, &Uses::color), note(passing.strength_texture, &Uses::alpha);
+    note(passing.color_texture, &Uses::color);
+  }
   return uses;
 }
 

@@ -6,6 +6,7 @@
 #include "brdf/clear_coat.h"
 #include "brdf/iridescence.h"
 #include "brdf/sheen.h"
+#include "scene/diffuse_transmission.h"
 #include "shade/contact.h"
 
 namespace pocketray {
@@ -60,6 +61,9 @@ bool has_texture(const Scene& scene, const Material& m) {
       if (use->texture != kNone) return true;
   if (const Iridescence* film = iridescence_of(scene, index))
     for (const TextureUse* use : {&film->strength_texture, &film->thickness_texture})
+      if (use->texture != kNone) return true;
+  if (const DiffuseTransmission* passing = diffuse_transmission_of(scene, index))
+    for (const TextureUse* use : {&passing->strength_texture, &passing->color_texture})
       if (use->texture != kNone) return true;
   if (scene.material_maps.empty()) return false;
   CHECK_LT(index, scene.material_maps.count);

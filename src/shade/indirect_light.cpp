@@ -5,6 +5,7 @@
 #include "shade/contact.h"
 #include "shade/even_points.h"
 #include "shade/filters.h"
+#include "shade/instances.h"
 #include "shade/interleaved.h"
 #include "shade/pixel.h"
 
@@ -57,17 +58,20 @@ bool visible_surface(Tracer* tracer, Ray* ray, Hit* hit, Surface* s, float* pass
   return false;
 }
 
-Vec3 indirect_light(Tracer* tracer, const Surface& s) {
-  const FrameData& frame = *tracer->frame;
-  if (has(frame.mask, Effect::instant_radiosity)) return virtual_light_at(tracer, s);
+Vec3 stored_light(const FrameData& frame, const Surface& s) {
   Vec3 sum = {0, 0, 0};
   for (int i = 0; i < IndirectList::kCount; ++i) {
     const IndirectInfo& info = IndirectList::kInfos[i];
-    if (!(frame.mask & info.effects)) continue;
+    if (!(frame.mask & kStoredLight & info.effects)) continue;
     sum += info.radiance({*frame.scene, frame.indirect.prepared[i], s.point, s.normal, kWhite, s.hit.triangle, s.hit.u,
                           s.hit.v, s.front, frame.settings.reconstruction});
   }
   return sum;
+}
+
+Vec3 indirect_light(Tracer* tracer, const Surface& s) {
+  const FrameData& frame = *tracer->frame;
+  return has(frame.mask, Effect::instant_radiosity) ? virtual_light_at(tracer, s) : stored_light(frame, s);
 }
 
 Vec3 pixel_indirect_light(Tracer* tracer, std::uint32_t column, std::uint32_t row) {

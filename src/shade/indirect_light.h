@@ -16,6 +16,9 @@ inline bool takes_indirect_light(const Surface& s) { return max_component(s.diff
 // virtual lights for shadows.
 Vec3 indirect_light(Tracer* tracer, const Surface& s);
 
+// indirect_light() without virtual lights.
+Vec3 stored_light(const FrameData& frame, const Surface& s);
+
 // Stands for the light of a pixel that shows no surface reflecting it.
 constexpr float kNoIndirectLight = -1;
 

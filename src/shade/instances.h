@@ -17,9 +17,11 @@ constexpr EffectMask kContactEffects =
 constexpr EffectMask kGoesOn = (kContactEffects & ~bit(Effect::absorption)) | bit(Effect::mirror);
 constexpr EffectMask kLobeEffects = bit(Effect::specular) | bit(Effect::mirror);
 
-// Layers over the base, and what is rare in glass. Their light is the business of one instance, that of coats.
+// Layers over the base, light through leaves, and what is rare in glass. Their light is the business of one instance,
+// that of coats.
 constexpr EffectMask kLayerEffects = bit(Effect::clear_coat) | bit(Effect::sheen) | bit(Effect::transmission_map) |
-                                     bit(Effect::rough_refraction) | bit(Effect::iridescence);
+                                     bit(Effect::rough_refraction) | bit(Effect::iridescence) |
+                                     bit(Effect::diffuse_transmission);
 constexpr EffectMask as_coat(EffectMask plan) {
   return plan & kLayerEffects & kEffectsBuilt ? plan | bit(Effect::clear_coat) : plan;
 }

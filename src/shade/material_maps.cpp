@@ -6,6 +6,7 @@
 #include "effect/effect_probe.h"
 #include "scene/metallic_roughness.h"
 #include "shade/clear_coat.h"
+#include "shade/diffuse_transmission.h"
 #include "shade/film.h"
 #include "shade/instances.h"
 #include "shade/normal_map.h"
@@ -144,7 +145,7 @@ void mapped_surface(const FrameData& frame, const Ray& ray, const Hit& hit, Surf
   }
   float passes = 1;  // through the sheen
   const bool has_layers = (mask & kLayerEffects & kEffectsBuilt) != 0 && (frame.mask & kLayerEffects) != 0;
-  if (has_layers) passes = find_sheen(frame, ray, s);
+  if (has_layers) dim_by_passing(frame, s), passes = find_sheen(frame, ray, s);
   frame.kernels.glow(frame, s);
   if constexpr (has(mask, Effect::occlusion)) {
     if (has(frame.mask, Effect::ambient) && takes_part<mask>(frame, Effect::occlusion))

@@ -9,6 +9,7 @@
 #include "indirect/environment.h"
 #include "shade/branches.h"
 #include "shade/contact.h"
+#include "shade/diffuse_transmission.h"
 #include "shade/direct.h"
 #include "shade/film.h"
 #include "shade/instances.h"
@@ -221,6 +222,32 @@ Vec3 pass_coat(Tracer* tracer, const Ray& ray, const Surface& s, const Material&
   return sum;
 }
 
+// Radiance towards the viewer directly from the lights.
+template <EffectMask mask>
+inline Vec3 received_light(Tracer* tracer, const Surface& s, const Material& m, const Vec3& to_viewer,
+                           const Vec3& weight) {
+  if constexpr (has(mask, Effect::source_selection)) return selected_light<mask>(tracer, s, m, to_viewer, weight);
+  return direct_light<mask>(tracer, s, m, to_viewer, weight);
+}
+
+// Adds tile lighting to a secondary hit.
+template <EffectMask mask>
+void add_later_light(Tracer* tracer, const Path<mask>& path, Surface* s) {
+  if constexpr ((kInterleavedEffects & kEffectsBuilt) != 0 && (mask & kGoesOn) != 0)
+    if (tracer->frame->kernels.add_later_light) tracer->frame->kernels.add_later_light(tracer, path.weight, s);
+}
+
+// Light that passes the surface from its other side.
+template <EffectMask mask>
+[[gnu::noinline]] Vec3 light_from_behind(Tracer* tracer, const Ray& ray, const Surface& s, const Material& m,
+                                         const Path<mask>& path) {
+  static constexpr Material kMatte;
+  Surface behind;
+  if (!find_other_side(*tracer->frame, ray, s, m, &behind)) return {0, 0, 0};
+  add_later_light<mask>(tracer, path, &behind);
+  return behind.glow + received_light<mask>(tracer, behind, kMatte, -ray.direction, path.weight);
+}
+
 // Radiance leaving the surface back along the ray; `m` has the lobes at the point.
 template <EffectMask mask>
 inline Vec3 shade_lobes(Tracer* tracer, const Ray& ray, const Surface& s, const Material& m, const Contact* contact,
@@ -229,12 +256,9 @@ inline Vec3 shade_lobes(Tracer* tracer, const Ray& ray, const Surface& s, const 
   bool scatters = !is_zero(s.diffuse);
   if constexpr (has(mask, Effect::specular)) scatters |= !is_zero(m.specular);
   if constexpr (has(mask, Effect::clear_coat)) scatters |= s.coat.lobe > 0 || !is_zero(s.sheen.color);
-  if (scatters) {
-    if constexpr (has(mask, Effect::source_selection))
-      sum += selected_light<mask>(tracer, s, m, -ray.direction, path.weight);
-    else
-      sum += direct_light<mask>(tracer, s, m, -ray.direction, path.weight);
-  }
+  if (scatters) sum += received_light<mask>(tracer, s, m, -ray.direction, path.weight);
+  if constexpr (has(mask, Effect::clear_coat))
+    if (has(tracer->frame->mask, Effect::diffuse_transmission)) sum += light_from_behind<mask>(tracer, ray, s, m, path);
   if constexpr (kBranches<mask>) add_certain(tracer, path.weight * sum);
   Vec3 mirrored = {0, 0, 0};
   if constexpr (has(mask, Effect::mirror)) {
@@ -281,13 +305,6 @@ Vec3 shade(Tracer* tracer, const Ray& ray, const Surface& s, const Contact* cont
   } else {
     return shade_lobes<mask>(tracer, ray, s, *s.material, contact, path);
   }
-}
-
-// Adds tile lighting to a secondary hit.
-template <EffectMask mask>
-void add_later_light(Tracer* tracer, const Path<mask>& path, Surface* s) {
-  if constexpr ((kInterleavedEffects & kEffectsBuilt) != 0 && (mask & kGoesOn) != 0)
-    if (tracer->frame->kernels.add_later_light) tracer->frame->kernels.add_later_light(tracer, path.weight, s);
 }
 
 // Adds the blending surfaces of a contact, one over the other. Returns false if nothing behind them matters.

@@ -6,6 +6,7 @@
 #include "base/check.h"
 #include "brdf/clear_coat.h"
 #include "brdf/sheen.h"
+#include "scene/diffuse_transmission.h"
 #include "shade/edges.h"
 #include "shade/sample_points.h"
 #include "shade/trace_spans.h"
@@ -27,7 +28,8 @@ TilePixels pixels_of(const Settings& settings, std::uint32_t column, std::uint32
 
 bool scatters(const Scene& scene, std::uint32_t material) {
   const Material& m = scene.materials[material];
-  return !is_zero(m.diffuse) || !is_zero(m.specular) || coat_of(scene, material) || sheen_of(scene, material);
+  return !is_zero(m.diffuse) || !is_zero(m.specular) || coat_of(scene, material) || sheen_of(scene, material) ||
+         diffuse_transmission_of(scene, material);
 }
 
 // Finds the pixels whose first hits are unchanged and may receive light.

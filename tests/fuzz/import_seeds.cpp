@@ -70,6 +70,17 @@ std::string glass_gltf() {
       "iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mNoaPj/HwAGggL/bOBDIwAAAABJRU5ErkJggg==\"}]");
 }
 
+// A leaf with both its textures, and a volume.
+std::string leaf_gltf() {
+  const std::string texture = "Texture\":{\"index\":0,\"texCoord\":0}";
+  return triangle_gltf(
+      "{\"extensions\":{\"KHR_materials_volume\":{\"thicknessFactor\":0.5},\"KHR_materials_diffuse_transmission\":{"
+      "\"diffuseTransmissionFactor\":0.7,\"diffuseTransmissionColorFactor\":[0.5,0.9,0.1],\"diffuseTransmission" +
+          texture + ",\"diffuseTransmissionColor" + texture + "}}}",
+      ",\"textures\":[{\"source\":0}],\"images\":[{\"uri\":\"data:image/png;base64,"
+      "iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mNoaPj/HwAGggL/bOBDIwAAAABJRU5ErkJggg==\"}]");
+}
+
 std::string ply(const char* format, const char* count_type, bool binary) {
   std::string file =
       std::string("ply\nformat ") + format + " 1.0\nelement vertex 4\nproperty float x\nproperty float y\n" +
@@ -130,6 +141,7 @@ std::vector<Model> models() {
       {"coated.gltf", "gltf", coated_gltf()},
       {"cloth.gltf", "gltf", cloth_gltf()},
       {"glass.gltf", "gltf", glass_gltf()},
+      {"leaf.gltf", "gltf", leaf_gltf()},
       {"animated.glb", "glb", animated_glb()},
       {"square.obj", "obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvn 0 0 1\nf 1/1/1 2//1 3/1 -1\nl 1 2\n"},
       {"forms.obj", "obj",

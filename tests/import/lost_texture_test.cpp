@@ -49,6 +49,9 @@ TEST_CASE("gltf_lost_textures_are_named_and_left_out") {
             "}}",
         "\"extensions\":{\"KHR_materials_sheen\":{\"sheenColorFactor\":[1,1,1],\"sheenColorTexture" + lost +
             ",\"sheenRoughnessFactor\":1,\"sheenRoughnessTexture" + lost + "}}",
+        "\"extensions\":{\"KHR_materials_diffuse_transmission\":{\"diffuseTransmissionFactor\":1,"
+        "\"diffuseTransmissionTexture" +
+            lost + ",\"diffuseTransmissionColorTexture" + lost + "}}",
         "\"extensions\":{\"KHR_materials_iridescence\":{\"iridescenceFactor\":1,\"iridescenceTexture" + lost +
             ",\"iridescenceThicknessTexture" + lost + "}}",
         "\"pbrMetallicRoughness\":{\"metallicFactor\":0},\"extensions\":{\"KHR_materials_volume\":{\"thicknessFactor\":"

@@ -35,6 +35,7 @@ SceneArrays arrays_of(const GeneratedScene& s) {
   copy(scene.second_uvs, &a.second_uvs), copy(scene.colors, &a.colors), copy(scene.triangles, &a.triangles);
   copy(scene.materials, &a.materials), copy(scene.material_maps, &a.material_maps), copy(scene.grains, &a.grains);
   copy(scene.glass_maps, &a.glass_maps), copy(scene.iridescences, &a.iridescences);
+  copy(scene.diffuse_transmissions, &a.diffuse_transmissions);
   copy(scene.sheens, &a.sheens), copy(scene.clear_coats, &a.clear_coats), copy(scene.tangents, &a.tangents);
   copy(scene.textures, &a.textures), copy(scene.texels, &a.texels);
   copy(scene.lights, &a.lights), copy(scene.cameras, &a.cameras), copy(scene.nodes, &a.nodes);
@@ -55,9 +56,9 @@ std::uint32_t count_of(const SceneArrays& a, Invisible what) {
 void spoil(SceneArrays* a, Rng* rng) {
   auto chance = [&] { return next_u32(rng) % 2 == 0; };
   a->info.ambient += Vec3{0.1f, 0.1f, 0.1f};  // scenes without any light get the default lights
-  const std::uint32_t values[] = {0xFF000000, 0xFFFFFFFF, 0xFFFF8080, 0xFF208040, next_u32(rng) | 0xFF000000};
+  const std::uint32_t values[] = {0xFF000000, 0xFFFFFFFF, 0xFFFF8080, 0xFF208040, 0xFFFFFF, next_u32(rng) | 0xFF000000};
   for (const Texture& t : a->textures) {
-    const std::uint32_t value = values[next_u32(rng) % 5], count = level_texels(t.width, t.height, t.level_count);
+    const std::uint32_t value = values[next_u32(rng) % 6], count = level_texels(t.width, t.height, t.level_count);
     if (chance()) continue;
     for (std::uint32_t i = 0; i < count; ++i) a->texels[t.texel_begin + i] = value;
   }

@@ -151,6 +151,13 @@ const Case kCases[] = {
        s->iridescences[1].strength = 1;
        s->iridescences[1].strength_texture.texture = texture_of(s, kGreenBlue, {{visible, 255, 255, 255}});
      }},
+    {"leaf of alpha 0", Effect::diffuse_transmission,
+     "none of 2 materials pass light diffusely (1 with a texture of alpha 0)",
+     [](GeneratedScene* s, bool visible) {
+       s->diffuse_transmissions.resize(2);
+       s->diffuse_transmissions[1].strength = 1;
+       s->diffuse_transmissions[1].strength_texture.texture = texture_of(s, {{9, 9, 9, 0}}, {{9, 9, 9, visible}});
+     }},
     {"grain under black", Effect::anisotropy, "none of 2 materials have a grain (1 with a black texture)",
      [](GeneratedScene* s, bool visible) {
        s->materials[1].brdf = kGgx, s->materials[1].specular = {0.5f, 0.5f, 0.5f}, s->materials[1].roughness = 0.2f;
@@ -238,6 +245,9 @@ bool is_on_by_flags(const Asked& asked) {
     case Effect::iridescence:
       return std::any_of(s.iridescences.begin(), s.iridescences.end(),
                          [](const Iridescence& film) { return film.strength > 0; });
+    case Effect::diffuse_transmission:
+      return std::any_of(s.diffuse_transmissions.begin(), s.diffuse_transmissions.end(),
+                         [](const DiffuseTransmission& passing) { return passing.strength > 0; });
     case Effect::sheen:
       return std::any_of(s.sheens.begin(), s.sheens.end(), [](const Sheen& c) { return c.color.x > 0; });
     case Effect::anisotropy:

@@ -92,8 +92,8 @@ TEST_CASE("probe_generated_scenes_enter_what_the_plan_has_and_nothing_else") {
     // A glossy lobe is entered only where a light is.
     constexpr std::uint32_t kLit =
         bit(Feature::point_light) | bit(Feature::spot_light) | bit(Feature::directional_light) | bit(Feature::emission);
-    constexpr std::uint32_t kNarrow =
-        bit(Feature::transmission_map) | bit(Feature::rough_refraction) | bit(Feature::iridescence);
+    constexpr std::uint32_t kNarrow = bit(Feature::transmission_map) | bit(Feature::rough_refraction) |
+                                      bit(Feature::iridescence) | bit(Feature::diffuse_transmission);
     constexpr std::uint32_t kGlossy =
         bit(Feature::metallic_roughness) | bit(Feature::anisotropy) | bit(Feature::clear_coat) | kNarrow;
     if ((features & kGlossy) && !(features & kLit)) continue;

@@ -34,7 +34,8 @@ bool same_scene(const Scene& a, const Scene& b) {
          same_bytes(a.clear_coats, b.clear_coats) && same_bytes(a.default_view, b.default_view) &&
          same_bytes(a.animation_labels, b.animation_labels) && same_bytes(a.node_visible, b.node_visible) &&
          same_bytes(a.origin, b.origin) && same_bytes(a.sheens, b.sheens) && same_bytes(a.framings, b.framings) &&
-         same_bytes(a.glass_maps, b.glass_maps) && same_bytes(a.iridescences, b.iridescences);
+         same_bytes(a.glass_maps, b.glass_maps) && same_bytes(a.iridescences, b.iridescences) &&
+         same_bytes(a.diffuse_transmissions, b.diffuse_transmissions);
 }
 
 }  // namespace

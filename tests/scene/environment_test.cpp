@@ -85,14 +85,14 @@ TEST_CASE("environment_octahedral_map_covers_the_sphere_without_seams") {
 // Goal: files of earlier versions are read: 7 has no environments, grains and tangents, 8 no grains and tangents, 9 no
 // second texture coordinates, 10 no clear coats and divided triangles, 11 no default views, 12 no labels of
 // animations and no origin, 13 no grids that are cut apart, 14 no reductions, 16 no sheens, 17 no framings, 18 no
-// maps of glass, thin films, near planes and suns. Method: such files, made from today's: a table without the last
-// sections, so that data may begin earlier.
+// maps of glass, thin films, near planes and suns, 19 no diffuse transmission. Method: such files, made from today's: a
+// table without the last sections, so that data may begin earlier.
 TEST_CASE("baked_open_reads_files_of_earlier_versions") {
   const struct {
     std::uint32_t version;
     std::size_t sections;
   } cases[] = {{7, 33},  {8, 35},  {9, 37},  {10, 38}, {11, 40}, {12, 41},
-               {13, 44}, {14, 45}, {16, 46}, {17, 47}, {18, 48}};
+               {13, 44}, {14, 45}, {16, 46}, {17, 47}, {18, 48}, {19, 52}};
   for (const auto& c : cases) {
     CAPTURE(c.version);
     FullScene full;
@@ -107,11 +107,12 @@ TEST_CASE("baked_open_reads_files_of_earlier_versions") {
     if (c.version < 15) full.reductions.clear();
     if (c.version < 17) full.sheens.clear();
     if (c.version < 18) full.framings.clear();
-    full.glass_maps.clear(), full.iridescences.clear();
-    full.camera_near.clear(), full.environment_suns.clear(), full.bind();
+    if (c.version < 19) full.glass_maps.clear(), full.iridescences.clear();
+    if (c.version < 19) full.camera_near.clear(), full.environment_suns.clear();
+    full.diffuse_transmissions.clear(), full.bind();
     const BakedFile now = bake(full.scene);
     auto data_begin = [](std::size_t sections) { return (kTableAt + sections * kSectionBytes + 63) / 64 * 64; };
-    const std::size_t begin = data_begin(c.sections), shift = data_begin(52) - begin;
+    const std::size_t begin = data_begin(c.sections), shift = data_begin(53) - begin;
     BakedFile before(now.size() - shift);
     std::memset(before.data(), 0, begin);
     std::memcpy(before.data(), now.data(), kTableAt + c.sections * kSectionBytes);

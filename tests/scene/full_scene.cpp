@@ -106,6 +106,7 @@ void FullScene::bind() {
   scene.sheens = view(sheens), scene.clear_coats = view(clear_coats), scene.default_view = view(default_view);
   scene.framings = view(framings);
   scene.camera_near = view(camera_near), scene.environment_suns = view(environment_suns);
+  scene.diffuse_transmissions = view(diffuse_transmissions);
   scene.animation_labels = view(animation_labels), scene.node_visible = view(node_visible);
   scene.origin = view(origin);
 }
@@ -158,6 +159,10 @@ void make_full_scene(std::uint64_t seed, std::uint32_t vertex_count, std::uint32
   Iridescence& film = full->iridescences[1];
   film.strength = 0.5f, film.ior = 1.25f, film.thickness_low = 50, film.thickness_high = 600;
   film.strength_texture.texture = 1, film.thickness_texture.texture = 0;
+  full->diffuse_transmissions.resize(full->materials.size());
+  DiffuseTransmission& passing = full->diffuse_transmissions[1];
+  passing.strength = 0.5f, passing.color = {0.25f, 0.5f, 1};
+  passing.strength_texture.texture = 0, passing.color_texture.texture = 1;
   full->sheens.resize(full->materials.size());
   Sheen& sheen = full->sheens[1];
   sheen.color = {0.75f, 0.5f, 0.25f}, sheen.roughness = 0.5f, sheen.roughness_low = 0.25f;

@@ -44,6 +44,7 @@ struct FullScene {
   std::vector<pocketray::Iridescence> iridescences;
   std::vector<pocketray::DefaultView> default_view;
   std::vector<pocketray::Framing> framings;
+  std::vector<pocketray::DiffuseTransmission> diffuse_transmissions;
   std::vector<float> camera_near;
   std::vector<pocketray::EnvironmentSun> environment_suns;
   std::vector<pocketray::AnimationLabel> animation_labels;

@@ -120,5 +120,5 @@ TEST_CASE("invisible_kinds_are_validated") {
   scene.reductions = {&reduction, 1};
   CHECK(validate_scene(scene).ok);
   reduction.what = static_cast<Invisible>(kInvisibleCount);
-  CHECK(std::string(validate_scene(scene).message) == "reductions[0] is of kind 20, there are 20");
+  CHECK(std::string(validate_scene(scene).message) == "reductions[0] is of kind 21, there are 21");
 }

@@ -1,4 +1,4 @@
-// Rules of validate_scene() for coats, sheens, thin films and textures of glass.
+// Rules of validate_scene() for coats, sheens, thin films, leaves and textures of glass.
 #include "scene/refusals.h"
 
 using namespace pocketray;
@@ -88,4 +88,20 @@ TEST_CASE("validate_scene_refuses_bad_films") {
           [](FullScene* f) { f->materials[0].unlit = 1, f->iridescences[0].strength = 1; });
   refuses("one for each", [](FullScene* f) { f->iridescences.pop_back(); });
   accepts([](FullScene* f) { f->iridescences.clear(); });
+}
+
+// Goal: diffuse transmission out of range, with an invalid texture or of an unlit material is refused.
+TEST_CASE("validate_scene_refuses_bad_diffuse_transmission") {
+  for (float bad : {kNan, kInf, 1.01f, -0.5f}) {
+    refuses("diffuse_transmissions[1].strength", [=](FullScene* f) { f->diffuse_transmissions[1].strength = bad; });
+    refuses("diffuse_transmissions[0].color.y", [=](FullScene* f) { f->diffuse_transmissions[0].color.y = bad; });
+  }
+  refuses("diffuse_transmissions[1].strength_texture is texture 7 of 2",
+          [](FullScene* f) { f->diffuse_transmissions[1].strength_texture.texture = 7; });
+  refuses("diffuse_transmissions[2].color_texture has a transform",
+          [](FullScene* f) { f->diffuse_transmissions[2].color_texture.m[0][1] = kNan; });
+  refuses("diffuse_transmissions[0] belongs to materials[0], which is unlit",
+          [](FullScene* f) { f->materials[0].unlit = 1, f->diffuse_transmissions[0].strength = 1; });
+  refuses("one for each", [](FullScene* f) { f->diffuse_transmissions.pop_back(); });
+  accepts([](FullScene* f) { f->diffuse_transmissions.clear(); });
 }

@@ -112,6 +112,7 @@ TEST_CASE("point_groups_are_the_same_in_tiles_and_ray_by_ray") {
     if (!s->sheens.empty()) s->sheens.resize(s->materials.size());
     if (!s->glass_maps.empty()) s->glass_maps.resize(s->materials.size());
     if (!s->iridescences.empty()) s->iridescences.resize(s->materials.size());
+    if (!s->diffuse_transmissions.empty()) s->diffuse_transmissions.resize(s->materials.size());
     s->bind();
     Settings settings = settings_of(kPoints[seed % 6]);
     settings.cut_off_levels = seed % 3 == 0 ? 0.5f : 0;

@@ -297,6 +297,7 @@ TEST_CASE("polygon_light_is_the_same_in_tiles_and_ray_by_ray") {
     if (!s->sheens.empty()) s->sheens.resize(s->materials.size());
     if (!s->glass_maps.empty()) s->glass_maps.resize(s->materials.size());
     if (!s->iridescences.empty()) s->iridescences.resize(s->materials.size());
+    if (!s->diffuse_transmissions.empty()) s->diffuse_transmissions.resize(s->materials.size());
     s->bind();
     for (std::uint32_t points : {1u, 4u, 9u}) {
       CAPTURE(points);

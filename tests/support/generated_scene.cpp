@@ -167,6 +167,20 @@ void add_films(GeneratedScene* s, std::uint32_t features, std::uint64_t seed) {
   s->iridescences[2].thickness_texture.texture = add_noise_texture(s, &rng, false);
 }
 
+// Light passes some surfaces of all kinds diffusely; one has whatever textures there are.
+void add_leaves(GeneratedScene* s, std::uint32_t features, std::uint64_t seed) {
+  if (!has(features, Feature::diffuse_transmission)) return;
+  s->diffuse_transmissions.resize(s->materials.size());
+  for (const std::uint32_t material : {1u, 2u, 6u, 7u, 8u}) {
+    DiffuseTransmission& passing = s->diffuse_transmissions[material];
+    passing.strength = 0.4f + 0.05f * static_cast<float>(material), passing.color = {0.9f, 0.7f, 0.2f};
+  }
+  if (!has(features, Feature::texture)) return;
+  Rng rng = make_rng(seed + 4);
+  s->diffuse_transmissions[1].strength_texture.texture = add_noise_texture(s, &rng, true);
+  s->diffuse_transmissions[1].color_texture.texture = add_noise_texture(s, &rng, false);
+}
+
 void add_bodies(GeneratedScene* s, std::uint32_t features, Rng* rng) {
   Material shiny = matte(random_color(rng)), reflecting = matte(random_color(rng) * 0.5f),
            glass = matte(random_color(rng)), core = glass;
@@ -258,6 +272,8 @@ void add_mip_maps(GeneratedScene* s) {
     repeat(&maps.metallic_roughness), repeat(&maps.occlusion), repeat(&maps.specular);
   for (ClearCoat& coat : s->clear_coats) repeat(&coat.strength_texture), repeat(&coat.roughness_texture);
   for (Sheen& sheen : s->sheens) repeat(&sheen.color_texture), repeat(&sheen.roughness_texture);
+  for (DiffuseTransmission& passing : s->diffuse_transmissions)
+    repeat(&passing.strength_texture), repeat(&passing.color_texture);
   for (GlassMap& glass : s->glass_maps) repeat(&glass.transmission_texture), repeat(&glass.thickness_texture);
 }
 
@@ -286,6 +302,7 @@ std::unique_ptr<GeneratedScene> generate_scene(std::uint32_t features, std::uint
   add_sheens(s.get(), features, seed);
   add_glass_maps(s.get(), features, seed);
   add_films(s.get(), features, seed);
+  add_leaves(s.get(), features, seed);
   if (!s->material_maps.empty()) s->material_maps.resize(s->materials.size());
   if (!s->grains.empty()) s->grains.resize(s->materials.size());
   if (has(features, Feature::mip_map)) add_mip_maps(s.get());
@@ -309,7 +326,7 @@ Settings settings_for(std::uint32_t features, std::uint32_t width, std::uint32_t
   settings.samples_per_pixel = has(features, Feature::supersampling) ? 2 : 1;
   const std::uint32_t lit = features & ~bit(Feature::second_uv) & ~bit(Feature::clear_coat) & ~bit(Feature::sheen) &
                             ~bit(Feature::transmission_map) & ~bit(Feature::rough_refraction) &
-                            ~bit(Feature::iridescence);
+                            ~bit(Feature::iridescence) & ~bit(Feature::diffuse_transmission);
   settings.points_per_area_light = lit % 3 == 0 ? 9 : 2;  // in groups, or tested one by one
   return settings;
 }

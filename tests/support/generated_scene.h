@@ -42,8 +42,9 @@ enum class Feature : int {
   transmission_map,
   rough_refraction,
   iridescence,
+  diffuse_transmission,
 };
-constexpr int kFeatureCount = 29;
+constexpr int kFeatureCount = 30;
 constexpr std::uint32_t bit(Feature feature) { return 1u << static_cast<int>(feature); }
 constexpr std::uint32_t kAllFeatures = (1u << kFeatureCount) - 1;
 constexpr bool has(std::uint32_t features, Feature feature) { return (features & bit(feature)) != 0; }
@@ -62,6 +63,7 @@ struct GeneratedScene {
   std::vector<Sheen> sheens;
   std::vector<GlassMap> glass_maps;
   std::vector<Iridescence> iridescences;
+  std::vector<DiffuseTransmission> diffuse_transmissions;
   std::vector<PackedTangent> tangents;  // of the first vertices; the rest have none
   std::vector<Texture> textures;
   std::vector<std::uint32_t> texels;

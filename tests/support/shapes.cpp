@@ -29,6 +29,7 @@ void GeneratedScene::bind() {
   scene.material_maps = view(material_maps), scene.grains = view(grains);
   scene.clear_coats = view(clear_coats), scene.sheens = view(sheens);
   scene.glass_maps = view(glass_maps), scene.iridescences = view(iridescences);
+  scene.diffuse_transmissions = view(diffuse_transmissions);
   if (!tangents.empty()) tangents.resize(positions.size());
   scene.tangents = view(tangents);
   scene.textures = view(textures), scene.texels = view(texels), scene.lights = view(lights);

@@ -14,7 +14,7 @@ EFFECTS = ["shadow", "specular", "mirror", "refraction", "absorption", "alpha-ma
            "ambient-gloss", "metallic-roughness", "normal-map", "occlusion", "mip-map", "selective", "environment",
            "undersampling", "source-selection", "environment-shadow",
            "anisotropy", "second-uv", "clear-coat", "sheen", "edge-sampling",
-           "transmission-map", "rough-refraction", "iridescence"]
+           "transmission-map", "rough-refraction", "iridescence", "diffuse-transmission"]
 
 # ---- Scenes: the hash
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/check.h"
+#include "scene/diffuse_transmission.h"
 #include "scene/invisible.h"
 #include "scene/metallic_roughness.h"
 
@@ -64,6 +65,14 @@ std::uint32_t fold_film(const Scene& scene, std::uint32_t material, SceneArrays*
   return 0;
 }
 
+std::uint32_t drop_passing(const Scene& scene, std::uint32_t material, SceneArrays* arrays) {
+  CHECK(arrays != nullptr);
+  const DiffuseTransmission* passing = diffuse_transmission_of(scene, material);
+  if (!passing || shows_diffuse_transmission(scene, *passing)) return 0;
+  arrays->diffuse_transmissions[material] = DiffuseTransmission();
+  return 1;
+}
+
 void drop_empty_maps(SceneArrays* arrays) {
   CHECK(arrays != nullptr);
   auto drop = [](auto* entries, auto is_used) {
@@ -71,6 +80,7 @@ void drop_empty_maps(SceneArrays* arrays) {
   };
   drop(&arrays->glass_maps, [](const GlassMap& glass) { return glass.transmission > 0; });
   drop(&arrays->iridescences, [](const Iridescence& film) { return film.strength > 0; });
+  drop(&arrays->diffuse_transmissions, [](const DiffuseTransmission& passing) { return passing.strength > 0; });
   if (arrays->glass_maps.empty()) drop(&arrays->material_maps, has_map);
 }
 

@@ -225,6 +225,7 @@ std::uint32_t copy_material(SceneBuilder* builder, std::uint32_t material) {
   };
   copy_entry(&out.material_maps), copy_entry(&out.grains), copy_entry(&out.clear_coats), copy_entry(&out.sheens);
   copy_entry(&out.glass_maps), copy_entry(&out.iridescences);
+  copy_entry(&out.diffuse_transmissions);
   return copy;
 }
 

@@ -177,6 +177,13 @@ struct GltfFilmTextures {
 GltfFilmTextures gltf_film_textures(const tinygltf::Material& source);
 Iridescence gltf_read_film(GltfFile* file, const tinygltf::Material& source);
 
+// gltf_passing.cpp: diffuse transmission of a material, and its textures if it has one.
+struct GltfPassingTextures {
+  tinygltf::TextureInfo strength, color;
+};
+GltfPassingTextures gltf_passing_textures(const tinygltf::Material& source);
+DiffuseTransmission gltf_read_passing(GltfFile* file, const tinygltf::Material& source);
+
 // gltf_mesh.cpp: the primitives of a mesh that make triangles.
 std::vector<MeshData> gltf_mesh(GltfFile* file, int mesh);
 

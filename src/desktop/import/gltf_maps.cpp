@@ -107,6 +107,7 @@ GltfUvSets gltf_choose_uv_sets(GltfFile* file, const tinygltf::Material& source)
   const GltfSheenTextures sheen = gltf_sheen_textures(source);
   const GltfGlassTextures glass = gltf_glass_textures(source);
   const GltfFilmTextures film = gltf_film_textures(source);
+  const GltfPassingTextures passing = gltf_passing_textures(source);
   const bool leads = source.normalTexture.index < 0;  // the tangent frame serves only the coat's normals
   const tinygltf::Value* anisotropy = gltf_extension(source.extensions, "KHR_materials_anisotropy");
   const bool has_grain = anisotropy && gltf_number(*anisotropy, "anisotropyStrength", 0) > 0;
@@ -133,7 +134,9 @@ GltfUvSets gltf_choose_uv_sets(GltfFile* file, const tinygltf::Material& source)
              {"transmission", glass.transmission, is_lit},
              {"thickness", glass.thickness, is_lit},
              {"iridescence", film.strength, is_lit},
-             {"iridescence thickness", film.thickness, is_lit}};
+             {"iridescence thickness", film.thickness, is_lit},
+             {"diffuse transmission", passing.strength, is_lit},
+             {"diffuse transmission colour", passing.color, is_lit}};
   const char* first = nullptr;
   GltfUvSets sets;
   for (const auto& texture : all) {

@@ -144,9 +144,10 @@ static std::uint32_t read_material(GltfFile* file, int index, const tinygltf::Ma
   const ClearCoat coat = gltf_read_coat(file, source);
   const Sheen sheen = gltf_read_sheen(file, source);
   const Iridescence film = gltf_read_film(file, source);
+  const DiffuseTransmission passing = gltf_read_passing(file, source);
   const bool needs_uvs = material.diffuse_texture.texture != kNone || material.emission_texture.texture != kNone ||
                          has_map(maps) || has_strength(grain) || is_textured(coat) || is_textured(sheen) ||
-                         is_textured(glass) || is_textured(film);
+                         is_textured(glass) || is_textured(film) || is_textured(passing);
   if (index >= 0 && needs_uvs) file->uv_sets[static_cast<std::size_t>(index)] = file->current_uv_sets;
   const std::uint32_t added = add_material(file->builder, material, source.name);
   if (!is_zero(material.transmission) && !gltf_extension(source.extensions, "KHR_materials_volume"))
@@ -175,6 +176,10 @@ static std::uint32_t read_material(GltfFile* file, int index, const tinygltf::Ma
   if (film.strength > 0) {
     out.iridescences.resize(added);
     out.iridescences.push_back(film);
+  }
+  if (passing.strength > 0) {
+    out.diffuse_transmissions.resize(added);
+    out.diffuse_transmissions.push_back(passing);
   }
   return added;
 }

@@ -28,6 +28,7 @@ const char* const kKnownExtensions[] = {
     "KHR_materials_clearcoat",
     "KHR_materials_sheen",
     "KHR_materials_iridescence",
+    "KHR_materials_diffuse_transmission",
     "KHR_node_visibility",
     "KHR_draco_mesh_compression",
     "EXT_meshopt_compression",

@@ -38,6 +38,8 @@ void each_use(SceneArrays* arrays, Visit visit) {
   for (Sheen& sheen : arrays->sheens) visit(&sheen.color_texture), visit(&sheen.roughness_texture);
   for (GlassMap& glass : arrays->glass_maps) visit(&glass.transmission_texture), visit(&glass.thickness_texture);
   for (Iridescence& film : arrays->iridescences) visit(&film.strength_texture), visit(&film.thickness_texture);
+  for (DiffuseTransmission& passing : arrays->diffuse_transmissions)
+    visit(&passing.strength_texture), visit(&passing.color_texture);
 }
 
 class Reducer {
@@ -177,6 +179,8 @@ bool Reducer::fold_color(std::uint32_t index) {
   }
   if (!survive_filters(m.diffuse_texture, {tint.x, tint.y, tint.z, alpha})) return false;
   const Vec3 missing = Vec3{1, 1, 1} - tint;
+  // A black metal still reflects at grazing incidence, but a lobe of black would be left out.
+  if (!is_zero(m.specular) && is_zero(m.specular - m.specular_tinted * missing) && m.grazing > 0) return false;
   m.diffuse *= tint, m.opacity *= alpha;
   m.specular = m.specular - m.specular_tinted * missing, m.mirror = m.mirror - m.mirror_tinted * missing;
   m.specular_tinted = min(m.specular_tinted * tint, m.specular),
@@ -404,6 +408,7 @@ void Reducer::reduce_all() {
     fold_coat(i);
     fold_sheen(i);
     note(Invisible::black_film, fold_film(scene_, i, &out_));
+    note(Invisible::opaque_leaf, drop_passing(scene_, i, &out_));
     fold_grain(i);
     const bool folds_color = fold_color(i), folds_emission = fold_emission(i);
     fold_glass(scene_, i, &out_);

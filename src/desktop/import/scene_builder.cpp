@@ -217,6 +217,7 @@ Scene view_of(const SceneArrays& arrays) {
   scene.material_maps = view(arrays.material_maps), scene.grains = view(arrays.grains);
   scene.clear_coats = view(arrays.clear_coats), scene.sheens = view(arrays.sheens);
   scene.glass_maps = view(arrays.glass_maps), scene.iridescences = view(arrays.iridescences);
+  scene.diffuse_transmissions = view(arrays.diffuse_transmissions);
   scene.tangents = view(arrays.tangents);
   scene.textures = view(arrays.textures), scene.texels = view(arrays.texels);
   scene.lights = view(arrays.lights), scene.cameras = view(arrays.cameras);
@@ -302,7 +303,7 @@ void finish_scene(SceneBuilder* builder, const std::string& name, ImportedScene*
   };
   bool textured = std::any_of(out.materials.begin(), out.materials.end(), has_texture) ||
                   any_textured(out.clear_coats) || any_textured(out.sheens) || any_textured(out.glass_maps) ||
-                  any_textured(out.iridescences) ||
+                  any_textured(out.iridescences) || any_textured(out.diffuse_transmissions) ||
                   std::any_of(out.material_maps.begin(), out.material_maps.end(), has_map) ||
                   std::any_of(out.grains.begin(), out.grains.end(),
                               [](const Grain& grain) { return grain.texture.texture != kNone; });
@@ -316,6 +317,7 @@ void finish_scene(SceneBuilder* builder, const std::string& name, ImportedScene*
   if (!out.sheens.empty()) out.sheens.resize(out.materials.size());
   if (!out.glass_maps.empty()) out.glass_maps.resize(out.materials.size());
   if (!out.iridescences.empty()) out.iridescences.resize(out.materials.size());
+  if (!out.diffuse_transmissions.empty()) out.diffuse_transmissions.resize(out.materials.size());
   if (!out.camera_near.empty()) out.camera_near.resize(out.cameras.size());
   make_tangents(builder);
   if (!out.colors.empty()) out.colors.resize(count, Rgba16{65535, 65535, 65535, 65535});

@@ -43,13 +43,14 @@ struct SceneArrays {
   std::vector<Rgba16> colors;
   std::vector<Triangle> triangles;
   std::vector<Material> materials;
-  std::vector<MaterialMaps> material_maps;  // of the first materials; the rest have none
-  std::vector<Grain> grains;                // likewise
-  std::vector<ClearCoat> clear_coats;       // likewise
-  std::vector<Sheen> sheens;                // likewise
-  std::vector<GlassMap> glass_maps;         // likewise
-  std::vector<Iridescence> iridescences;    // likewise
-  std::vector<PackedTangent> tangents;      // of the first vertices; see tangents.h
+  std::vector<MaterialMaps> material_maps;                 // of the first materials; the rest have none
+  std::vector<Grain> grains;                               // likewise
+  std::vector<ClearCoat> clear_coats;                      // likewise
+  std::vector<Sheen> sheens;                               // likewise
+  std::vector<GlassMap> glass_maps;                        // likewise
+  std::vector<Iridescence> iridescences;                   // likewise
+  std::vector<DiffuseTransmission> diffuse_transmissions;  // likewise
+  std::vector<PackedTangent> tangents;                     // of the first vertices; see tangents.h
   std::vector<Texture> textures;
   std::vector<std::uint32_t> texels;
   std::vector<Light> lights;
@@ -134,6 +135,9 @@ inline bool is_textured(const GlassMap& glass) {
 }
 inline bool is_textured(const Iridescence& film) {
   return film.strength_texture.texture != kNone || film.thickness_texture.texture != kNone;
+}
+inline bool is_textured(const DiffuseTransmission& passing) {
+  return passing.strength_texture.texture != kNone || passing.color_texture.texture != kNone;
 }
 inline bool is_textured(const Sheen& sheen) {
   return sheen.color_texture.texture != kNone || sheen.roughness_texture.texture != kNone;

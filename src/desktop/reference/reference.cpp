@@ -130,6 +130,17 @@ bool scatter(const Reference& reference, const ReferenceOptions& options, const 
   return !is_zero(path->weight);
 }
 
+// Goes on with the light of one side of a surface that light passes diffusely.
+void choose_side(const Vec3d& to_viewer, ReferenceSurface* s, Path* path, ReferenceSamples* samples) {
+  const double behind = max_component(s->passing),
+               all = behind + lobe_weight(*s, to_viewer) + max_component(s->mirror) + s->coat_mirror;
+  const double share = is_zero(s->transmission) ? behind / all : 0.5;
+  if (samples->next() < share)
+    path->weight = path->weight / share, *s = other_side(*s);
+  else
+    path->weight = path->weight / (1 - share);
+}
+
 // Share of an emitter's radiance credited to a path that meets it.
 double emission_weight(const Reference& reference, const ReferenceSurface& s, const Vec3d& direction,
                        const Path& path) {
@@ -144,6 +155,16 @@ double emission_weight(const Reference& reference, const ReferenceSurface& s, co
 double environment_weight(const Reference& reference, const Vec3d& direction, const Path& path) {
   if (path.sees_lights || reference.environment_shares.empty()) return 1;
   return power_heuristic(path.density, environment_density(reference, direction));
+}
+
+// One sample of the radiance towards the viewer directly from lights, and that which is not carried by paths.
+Vec3d received(const Reference& reference, const ReferenceOptions& options, const ReferenceSurface& s,
+               const Vec3d& to_viewer, bool goes_on, ReferenceSamples* samples) {
+  const bool model = options.transport == Transport::model;
+  Vec3d sum = exact_indirect(*reference.world.frame->scene, s.even, model) * s.open;
+  if (model) sum += reflected_surroundings(*reference.world.frame, s, to_viewer);
+  if (lobe_weight(s, to_viewer) > 0) sum += sample_direct_light(reference, options, s, to_viewer, goes_on, samples);
+  return sum;
 }
 
 // One sample of the radiance that arrives along a ray.
@@ -162,12 +183,12 @@ Vec3d trace_path(const Reference& reference, const ReferenceOptions& options, Re
              path.weight * radiance_behind(frame, ray.direction) * environment_weight(reference, ray.direction, path);
     if (s.material->unlit && has(frame.mask, Effect::emission)) return sum + path.weight * s.diffuse;
     if (!is_zero(s.emission)) sum += path.weight * s.emission * emission_weight(reference, s, ray.direction, path);
-    sum += exact_indirect(*frame.scene, path.weight * s.even, model) * s.open;
-    if (model) sum += path.weight * reflected_surroundings(frame, s, -ray.direction);
+    const bool goes_on = depth < options.depth_max;
+    if (model && !is_zero(s.passing))
+      sum += path.weight * received(reference, options, other_side(s), -ray.direction, goes_on, samples);
+    if (!model && !is_zero(s.passing)) choose_side(-ray.direction, &s, &path, samples);
     if (!model) s.cell = find_cell(reference.guide, s.point);
-    if (lobe_weight(s, -ray.direction) > 0)
-      sum +=
-          path.weight * sample_direct_light(reference, options, s, -ray.direction, depth < options.depth_max, samples);
+    sum += path.weight * received(reference, options, s, -ray.direction, goes_on, samples);
     bool is_last = depth >= options.depth_max;
     if ((is_last && !model) || !scatter(reference, options, s, contact, &ray, &path, samples)) return sum;
     if (is_last) return sum + path.weight * radiance_beyond_depth(frame, ray.direction);

@@ -54,6 +54,15 @@ Vec3d transmitted(const Reference& reference, const ReferenceSurface& s, const R
   return spawn(reference, s, passage.direction, weight * passage.share, beam, b.beyond);
 }
 
+// Radiance of the lobes that the renderer adds up over lights, and of stored light; `open` is the unoccluded fraction.
+Vec3d scattered(const Reference& reference, const ReferenceSurface& s, const Vec3d& to_viewer, double open) {
+  const FrameData& frame = *reference.world.frame;
+  Vec3d sum = exact_indirect_of(*frame.scene, s.even, frame.mask) * open;
+  sum += reflected_surroundings(frame, s, to_viewer) + environment_light_as_rendered(reference, s, to_viewer);
+  if (lobe_weight(s, to_viewer) > 0) sum += sum_light_points(reference, s, to_viewer, true, true);
+  return sum;
+}
+
 // Radiance that leaves a surface back along the ray.
 Vec3d shade(const Reference& reference, const ReferenceRay& ray, const ReferenceSurface& s,
             const ReferenceContact& contact, const Branch& branch) {
@@ -61,9 +70,8 @@ Vec3d shade(const Reference& reference, const ReferenceRay& ray, const Reference
   const Material& m = *s.material;
   if (m.unlit && has(frame.mask, Effect::emission)) return s.diffuse;
   const double open = has(frame.mask, Effect::ambient) ? s.open : 1;
-  Vec3d sum = s.emission + exact_indirect_of(*frame.scene, s.even, frame.mask) * open;
-  sum += reflected_surroundings(frame, s, -ray.direction) + environment_light_as_rendered(reference, s, -ray.direction);
-  if (lobe_weight(s, -ray.direction) > 0) sum += sum_light_points(reference, s, -ray.direction, true, true);
+  Vec3d sum = s.emission + scattered(reference, s, -ray.direction, open);
+  if (!is_zero(s.passing)) sum += scattered(reference, other_side(s), -ray.direction, 1);
   Vec3d turned = {0, 0, 0};
   if (!is_zero(lobes_of(s).mirror)) turned += s.mirror;
   if (!is_zero(s.transmission)) {

@@ -8,6 +8,7 @@
 #include "brdf/rough_refraction.h"
 #include "brdf/sheen.h"
 #include "indirect/environment.h"
+#include "scene/diffuse_transmission.h"
 #include "scene/metallic_roughness.h"
 #include "shade/texture.h"
 
@@ -174,6 +175,23 @@ Vec3d normal_of_map(const FrameData& frame, const TextureUse& map, float scale, 
   return is_zero(mapped) ? s.normal : mapped;
 }
 
+// KHR_materials_diffuse_transmission. What enters is attenuated by the Fresnel term at the viewer.
+void put_passing_on(const FrameData& frame, const Vec3d& direction, ReferenceSurface* s) {
+  const DiffuseTransmission* passing =
+      diffuse_transmission_of(*frame.scene, frame.scene->triangles[s->triangle].material());
+  if (!passing || !has(frame.mask, Effect::diffuse_transmission)) return;
+  double strength = static_cast<double>(passing->strength);
+  if (passing->strength_texture.texture != kNone)
+    strength *= static_cast<double>(color_at(frame, passing->strength_texture, *s).alpha);
+  s->passing = to_double(passing->color) * strength;
+  if (passing->color_texture.texture != kNone) s->passing *= to_double(color_at(frame, passing->color_texture, *s).rgb);
+  s->diffuse = s->diffuse * (1 - strength);
+  const double normal = max_component(s->specular + s->mirror);
+  if (!(normal > 0)) return;
+  const double away = 1 - std::fmax(0, -dot(s->normal, normalize(direction)));
+  s->passing = s->passing * std::fmax(0, (1 - normal) * (1 - away * away * away * away * away));
+}
+
 // KHR_materials_sheen. The base's specular part is not attenuated here, but by ReferenceSurface::passes.
 void put_sheen_on(const FrameData& frame, const Vec3d& direction, ReferenceSurface* s) {
   s->sheen = {0, 0, 0}, s->even = s->diffuse, s->passes = 1;
@@ -188,6 +206,7 @@ void put_sheen_on(const FrameData& frame, const Vec3d& direction, ReferenceSurfa
   s->passes = 1 - max_component(s->sheen) * albedo;
   s->diffuse = s->diffuse * s->passes, s->mirror = s->mirror * s->passes, s->emission = s->emission * s->passes;
   s->even = s->diffuse + s->sheen * albedo;
+  s->passing = s->passing * s->passes;
 }
 
 // KHR_materials_clearcoat; `unmapped` is the normal at the vertices.
@@ -213,7 +232,8 @@ void put_coat_on(const FrameData& frame, const Vec3d* corner, const Vec3d& direc
   if (has(frame.mask, Effect::specular) && !is_zero(s->coat.specular)) s->coat_lobe = strength;
   if (has(frame.mask, Effect::mirror)) s->coat_mirror = strength * fresnel * coat_mirror_share(roughness);
   s->diffuse = s->diffuse * passes, s->mirror = s->mirror * passes, s->emission = s->emission * passes;
-  s->sheen = s->sheen * passes, s->even = s->even * passes, s->passes *= passes;
+  s->sheen = s->sheen * passes, s->even = s->even * passes, s->passing = s->passing * passes;
+  s->passes *= passes;
 }
 
 // KHR_materials_anisotropy.
@@ -296,9 +316,20 @@ ReferenceSurface reference_surface(const FrameData& frame, const ReferenceHit& h
   s.emission = {0, 0, 0};
   if (!is_zero(m.emission) && (s.front || m.double_sided))
     s.emission = to_double(m.emission) * texel(m.emission_texture);
+  put_passing_on(frame, direction, &s);
   put_sheen_on(frame, direction, &s);
   put_coat_on(frame, corner, direction, unmapped, &s);
   return s;
+}
+
+ReferenceSurface other_side(const ReferenceSurface& s) {
+  ReferenceSurface other = s;
+  other.front = !s.front, other.normal = -s.normal, other.geometric = -s.geometric;
+  other.diffuse = other.even = s.passing;
+  other.passing = other.specular = other.mirror = other.emission = other.transmission = other.sheen = {0, 0, 0};
+  other.mapped = Material(), other.is_mapped = true, other.mapped.specular = {0, 0, 0};
+  other.film_strength = other.coat_lobe = other.coat_mirror = 0, other.passes = other.open = 1;
+  return other;
 }
 
 bool scatters_passing_light(const FrameData& frame, const ReferenceSurface& s) {
@@ -316,6 +347,8 @@ ReferenceRay leave(const FrameData& frame, const ReferenceSurface& s, const Vec3
       double below = dot(s.point - to_double(frame.geometry.positions[t.vertex(i)]), n);
       if (below < 0) origin += n * (-below * weight[i]);
     }
+    // Where the curved surface does not rise above the triangle, the ray meets the triangle itself.
+    if (origin == s.point) origin += s.geometric * (4 * kOwnSurface * s.magnitude);
   }
   return {origin, direction, kOwnSurface * s.magnitude / length(direction), t_max};
 }

@@ -22,7 +22,8 @@ struct ReferenceSurface : LobeFrameD {
   Vec3d transmission;  // tint of light that passes; zero: opaque
   // The thin film, as in SurfaceFilm; its strength is 0 without one.
   double film_strength = 0, film_ior = 0, film_thickness = 0;
-  double open;  // fraction of ambient light left by an occlusion map
+  Vec3d passing = {0, 0, 0};  // albedo for light from the other side, Effect::diffuse_transmission
+  double open;                // fraction of ambient light left by an occlusion map
   // The sheen under the coat, as in SurfaceSheen, and the albedo of the diffuse lobe and the sheen for light from
   // everywhere.
   Vec3d sheen, even;
@@ -39,6 +40,9 @@ struct ReferenceSurface : LobeFrameD {
 inline const Material& lobes_of(const ReferenceSurface& s) { return s.is_mapped ? s.mapped : *s.material; }
 
 ReferenceSurface reference_surface(const FrameData& frame, const ReferenceHit& hit, const Vec3d& direction);
+
+// The matte surface that receives light which passes `s` from its other side.
+ReferenceSurface other_side(const ReferenceSurface& s);
 
 // Returns whether light that passes the surface is scattered, Effect::rough_refraction.
 bool scatters_passing_light(const FrameData& frame, const ReferenceSurface& s);

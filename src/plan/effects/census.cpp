@@ -8,6 +8,7 @@
 #include "brdf/sheen.h"
 #include "indirect/environment.h"
 #include "scene/channel.h"
+#include "scene/diffuse_transmission.h"
 #include "scene/invisible.h"
 #include "scene/metallic_roughness.h"
 #include "shade/texture.h"
@@ -22,8 +23,10 @@ bool any_of_layers(const Scene& scene, std::uint32_t material, Property property
   const Sheen* sheen = sheen_of(scene, material);
   const Iridescence* film = iridescence_of(scene, material);
   const GlassMap* glass = glass_map_of(scene, material);
+  const DiffuseTransmission* passing = diffuse_transmission_of(scene, material);
   return (coat && (property(coat->strength_texture) || property(coat->roughness_texture) || property(coat->normal))) ||
          (sheen && (property(sheen->color_texture) || property(sheen->roughness_texture))) ||
+         (passing && (property(passing->strength_texture) || property(passing->color_texture))) ||
          (film && (property(film->strength_texture) || property(film->thickness_texture))) ||
          (glass && (property(glass->transmission_texture) || property(glass->thickness_texture)));
 }
@@ -125,6 +128,9 @@ Census take_census(const Scene& scene, const Settings& settings) {
     const Iridescence* film = iridescence_of(scene, i);
     if (film && !shows_film(scene, *film)) note(&c, Invisible::black_film, 1), film = nullptr;
     c.iridescent += film != nullptr;
+    const DiffuseTransmission* passing = diffuse_transmission_of(scene, i);
+    if (passing && !shows_diffuse_transmission(scene, *passing)) note(&c, Invisible::opaque_leaf, 1), passing = nullptr;
+    c.leafy += passing != nullptr;
     c.glass_mapped += !is_zero(m.transmission) && glass_map_of(scene, i);
     c.rough_glass += is_rough_glass(scene.materials[i]);
     bool is_bumpy = coat && shows_normal_map(scene, coat->normal, coat->normal_scale);
@@ -165,9 +171,10 @@ Census take_census(const Scene& scene, const Settings& settings) {
     c.unlit += m.unlit;
     c.textured += m.diffuse_texture.texture != kNone || m.emission_texture.texture != kNone;
     c.reflecting += reflects_surroundings(m) || shines;
-    c.diffuse += !(m.unlit && shows_unlit) && (!is_zero(m.diffuse) || sheen);
+    c.diffuse += !(m.unlit && shows_unlit) && (!is_zero(m.diffuse) || sheen || passing);
     c.one_sided += !m.double_sided && !transmits;
-    c.scattering += !(m.unlit && shows_unlit) && (!is_zero(m.diffuse) || !is_zero(m.specular) || shines || sheen);
+    c.scattering +=
+        !(m.unlit && shows_unlit) && (!is_zero(m.diffuse) || !is_zero(m.specular) || shines || sheen || passing);
   }
   count_lights(scene, &c);
   c.has_normals = shows_vertex_normals(scene);

@@ -11,7 +11,7 @@ struct Census {
                 emissive = 0, unlit = 0, textured = 0, scattering = 0, one_sided = 0, reflecting = 0, diffuse = 0,
                 metallic_roughness = 0, bumpy = 0, occluded = 0, with_levels = 0, grained = 0, second_uv = 0,
                 second_uv_occlusion = 0,  // of these, only the occlusion texture does
-      coated = 0, sheened = 0, glass_mapped = 0, rough_glass = 0, iridescent = 0;
+      coated = 0, sheened = 0, glass_mapped = 0, rough_glass = 0, iridescent = 0, leafy = 0;
   std::uint32_t lights[3] = {0, 0, 0}, light_count = 0;  // that shine on anything
   bool has_normals = false, has_colors = false, is_animated = false;
   // Contents that no picture shows, in the scene or left out of it.

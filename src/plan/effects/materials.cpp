@@ -66,6 +66,10 @@ constexpr EffectRule kRules[] = {
      [](const EffectCall& c) {
        return by_materials(c, c.census.iridescent, "have a thin film", Invisible::black_film);
      }},
+    {Effect::diffuse_transmission,
+     [](const EffectCall& c) {
+       return by_materials(c, c.census.leafy, "pass light diffusely", Invisible::opaque_leaf);
+     }},
     {Effect::mip_map, decide_mip_map},
     {Effect::back_face_culling,
      [](const EffectCall& c) { return by_materials(c, c.census.one_sided, "are one-sided"); }},

@@ -51,7 +51,8 @@ EffectDecision with_invisible(const EffectCall& call, EffectDecision decision, I
                                            "with a black texture",
                                            "with a black texture",
                                            "with a black texture",
-                                           "with a black texture"};
+                                           "with a black texture",
+                                           "with a texture of alpha 0"};
   static_assert(sizeof kTexts / sizeof kTexts[0] == kInvisibleCount, "one for each");
   const int what = static_cast<int>(invisible);
   CHECK(what < kInvisibleCount && decision.reason[0] != 0);
