@@ -29,6 +29,7 @@ Vec3 selected_light(Tracer* tracer, const Surface& s, const Material& m, const V
       continue;
     }
     const LightRun& run = frame.lights.runs[entry.run];
+    if (at_first_hit) trace_selected(tracer, run, entry.light);
     seen += entry.radiance * shadow<mask>(tracer, s, run, entry.light, nullptr, at_first_hit);
   }
   const float all = max_component(tested);

@@ -9,7 +9,7 @@
 #include "shade/instances.h"
 #include "shade/lights.h"
 #include "shade/lit_surface.h"
-#include "shade/tile_shadows.h"
+#include "shade/tile_receivers.h"
 
 namespace pocketray {
 namespace {
@@ -180,11 +180,19 @@ Vec3 SourceSearch::estimate() const {
   return sum;
 }
 
+void trace_selected(Tracer* tracer, const LightRun& run, std::uint32_t light) {
+  TileShadows* tile = tracer->tile_shadows;
+  if (!tile || light >= kTileLightMax || tile->selected[light] == kTogetherMin) return;
+  if (++tile->selected[light] < kTogetherMin) return;
+  if (emitter_of(tracer->light_points[light]) && is_grouped(*tracer)) return;
+  trace_light(tracer, run, light, tile->receivers, nullptr, tile);
+}
+
 void find_tile_surfaces(Tracer* tracer, const RayPacket& rays, const Hit* hits, TileShadows* shadows) {
-  const FrameData& frame = *tracer->frame;
-  for (std::uint32_t i = 0; i < rays.count; ++i)
-    if (hits[i].triangle != kNoTriangle) frame.kernels.surface(frame, ray_of(rays, i), hits[i], &shadows->surface[i]);
+  shadows->receivers.count = 0;
+  find_receivers(*tracer->frame, rays, hits, shadows, &shadows->receivers);
   std::memset(shadows->traced, 0, sizeof shadows->traced);
+  std::memset(shadows->selected, 0, sizeof shadows->selected);
 }
 
 }  // namespace pocketray

@@ -25,13 +25,6 @@ inline bool receives(const FrameData& frame, const Surface& s) {
   return max_component(most) <= frame.cut_off.left_out_max && !shines_by_coat(frame, s);
 }
 
-// Pixels whose first hits receive light, and the origins of their shadow rays, by pixel.
-struct TileReceivers {
-  std::uint32_t count = 0;
-  std::uint8_t pixel[kPacketMax];
-  Vec3 origin[kPacketMax];
-};
-
 void find_receivers(const FrameData& frame, const RayPacket& rays, const Hit* hits, TileShadows* shadows,
                     TileReceivers* receivers);
 

@@ -9,6 +9,7 @@ namespace pocketray {
 
 constexpr std::uint32_t kTileLightMax = 256;  // further lights are tested ray by ray
 constexpr std::uint32_t kTilePolygonMax = 4;  // polygons of further lamps are viewed again
+constexpr std::uint8_t kTogetherMin = 2;      // pixels that select a light before the rays of all are traced
 constexpr std::uint32_t kTileSampleMax = 8;   // further samples are computed again; these take 12 KiB
 
 // Unblocked light arriving at a pixel's first hit; see LightSample.
@@ -49,6 +50,13 @@ struct TilePolygon {
   TileMask viewed, open, blocked;
 };
 
+// Pixels whose first hits receive light, and the origins of their shadow rays, by pixel.
+struct TileReceivers {
+  std::uint32_t count = 0;
+  std::uint8_t pixel[kPacketMax];
+  Vec3 origin[kPacketMax];
+};
+
 // The surface at the first hit of each pixel, if any. For each light, which pixels it lights up (lit), whose shadow
 // rays were traced, and which of these are blocked by something opaque.
 struct TileShadows {
@@ -57,6 +65,9 @@ struct TileShadows {
   TileMask lit[kTileLightMax], traced[kTileLightMax], blocked[kTileLightMax];
   TileMask decided[kTileLightMax];        // replaces `traced` for points in groups; not set without groups
   TilePolygon polygons[kTilePolygonMax];  // by index in LightRun::polygons; not set without them
+  // Set with Effect::source_selection, as are `traced` and `blocked` of lights selected by several pixels.
+  TileReceivers receivers;
+  std::uint8_t selected[kTileLightMax];  // by so many pixels, up to kTogetherMin
 };
 
 // Fills `shadows` for the rays of a packet and their first hits.

@@ -68,13 +68,13 @@ struct alignas(64) Tracer {
   std::uint64_t rays[kRayKindCount] = {};
   std::uint64_t rays_left_out = 0, rays_ended = 0;
   TraceStats stats;
-  const LightPoint* light_points = nullptr;   // of the sample being traced, see sample_points.h
-  std::uint32_t points_of_lamp = 0;           // of these, the first ones of each flat lamp that the sample sees
-  const Surface* first_surface = nullptr;     // of the sample being shaded; null: not known
-  const TileShadows* tile_shadows = nullptr;  // of the current tile, or null
-  std::uint32_t tile_pixel = 0;               // index in the tile of the pixel being shaded
-  float budget = 0;                           // error still allowed for the current sample, as radiance
-  float skip_max = 0;                         // error allowed for a single ray
+  const LightPoint* light_points = nullptr;  // of the sample being traced, see sample_points.h
+  std::uint32_t points_of_lamp = 0;          // of these, the first ones of each flat lamp that the sample sees
+  const Surface* first_surface = nullptr;    // of the sample being shaded; null: not known
+  TileShadows* tile_shadows = nullptr;       // of the current tile, or null
+  std::uint32_t tile_pixel = 0;              // index in the tile of the pixel being shaded
+  float budget = 0;                          // error still allowed for the current sample, as radiance
+  float skip_max = 0;                        // error allowed for a single ray
   Branching branching;
   CornerRow corner_rows[4];                    // kept by selective rendering
   std::uint32_t corner_row_count = 0;          // rows in use: 0, 2 or 4

@@ -11,13 +11,14 @@ using namespace pocketray;
 
 namespace {
 
-// The frame that the renderer is ready for, traced by one thread.
+// The frame that the renderer is ready for, traced by one thread, whose tracer keeps the scratch of its selection.
 Picture trace_all(const FrameData& frame, Tracer* tracer) {
   Picture picture(std::size_t(frame.settings.width) * frame.settings.height);
   std::vector<Span> spans;
   for (int row = 0; row < static_cast<int>(frame.settings.height); ++row)
     spans.push_back({static_cast<std::uint16_t>(row), 0, static_cast<std::uint16_t>(frame.settings.width)});
-  *tracer = make_tracer(frame);
+  const Array<LightEntry> entries = tracer->light_entries;
+  *tracer = make_tracer(frame), tracer->light_entries = entries;
   trace_spans(tracer, spans.data(), static_cast<std::uint32_t>(spans.size()), Aov::none, picture.data());
   return picture;
 }
@@ -77,4 +78,45 @@ TEST_CASE("tile_shadows_are_known_at_first_hits_alone") {
   other_u.hit.u = 0.5f, other_v.hit.v = 0.25f, other_triangle.hit.triangle = 8, other_side.front = false;
   CHECK(same_surface(first, same));
   for (const Surface* s : {&other_u, &other_v, &other_triangle, &other_side}) CHECK_FALSE(same_surface(first, *s));
+}
+
+// Goal: rays to a light that several pixels of a tile select are traced together, each only once, and nothing else
+// changes. Method: 30 lights; single rays and those in packets, counted; bits without packets.
+TEST_CASE("tile_shadows_of_selected_lights_are_traced_together") {
+  auto s = generate_scene(bit(Feature::ambient), 3);
+  for (int i = 0; i < 30; ++i) {
+    Light light;
+    light.position = {0.4f * static_cast<float>(i % 6) - 1, 2 + 0.1f * static_cast<float>(i), 0.5f};
+    light.intensity = {1, 1, 1};
+    s->lights.push_back(light);
+  }
+  s->bind();
+  Settings settings = settings_for(bit(Feature::ambient), 40, 32);
+  settings.light_tolerance = 1.0f / 16;
+  auto test = make_renderer(s->scene, settings);
+  REQUIRE(has(test->renderer.effects.mask, Effect::source_selection));
+  REQUIRE(render_frame(&test->renderer, 0).ok);
+  FrameData frame = test->renderer.frame;
+  static AccelTraversal base;
+  static std::uint64_t single, together;
+  base = *frame.geometry.first_rays, single = together = 0;
+  AccelTraversal counting = base;
+  counting.occluded = [](const Accel& accel, const Ray& ray, const HitFilter* filter, TraceStats* stats) {
+    return ++single, base.occluded(accel, ray, filter, stats);
+  };
+  counting.occluded_packet = [](const Accel& accel, const SegmentPacket& rays, const HitFilter* filter,
+                                TraceStats* stats) {
+    return together += rays.count, base.occluded_packet(accel, rays, filter, stats);
+  };
+  frame.geometry.first_rays = &counting;
+  Tracer tracer, one_by_one;
+  tracer.light_entries = one_by_one.light_entries = test->renderer.tracers[0].light_entries;
+  const Picture picture = trace_all(frame, &tracer);
+  const std::uint64_t wanted = tracer.rays[static_cast<int>(RayKind::shadow)];
+  CHECK(single < wanted / 4);
+  CHECK(single + together >= wanted);
+  CHECK(together < wanted + wanted / 2);  // of pixels that do not select the light
+  frame.geometry.ray_by_ray = true;
+  CHECK(same_picture(picture, trace_all(frame, &one_by_one)));
+  CHECK(one_by_one.rays[static_cast<int>(RayKind::shadow)] == wanted);
 }
