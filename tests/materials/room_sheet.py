@@ -14,7 +14,7 @@ import sheet
 
 ROOMS = ("office", "bedroom", "kitchen", "bar", "gallery")
 EXPORTER = os.path.join(sheet.HERE, "../../platform/blender/pocketray.py")
-MEAN_MAX = 0.14
+MEAN_MAX = 0.19
 LIGHT = {"width": sheet.WIDTH, "height": sheet.HEIGHT, "depth": 12, "diffuse_bounces": 12, "clamp": 10}
 
 
