@@ -44,7 +44,7 @@ endif
 BUILD := $(if $(CROSS_PREFIX),build-$(CLASS)-$(notdir $(CROSS_PREFIX:%-=%)),build$(CLASS:%=-%))
 POCKETRAY := $(BUILD)/pocketray
 
-.PHONY: all run setup-tests test test-box hardcases pages softfloat mutants trials faults demo-split split-table motion-table fuzz flips bench bench-embree bench-povray bench-device contact-sheet mach-bands rooms governor package format tidy clean install help setup configure
+.PHONY: all run setup-tests test test-box hardcases pages softfloat mutants trials faults demo-split split-table motion-table fuzz flips bench bench-embree bench-povray bench-device contact-sheet room-sheet mach-bands rooms governor package format tidy clean install help setup configure
 all: configure
 	cmake --build $(BUILD) -j$(JOBS)$(if $(CLASS), --target pocketray)
 ifneq ($(CLASS),)
@@ -215,6 +215,12 @@ contact-sheet: configure
 	@tests/materials/contact_sheet.py $(POCKETRAY) --folder $(BUILD)/contact-sheet $(if $(MODELS),--models $(MODELS)) \
 	  $(JSON:%=--json %) $(SHEET_OPTIONS)
 
+# Five rooms, lit by area lights, point lamps, the sun, luminous surfaces and the sky, beside Cycles' pictures of them.
+room-sheet: configure
+	@toolchains/setup.sh contact-sheet
+	cmake --build $(BUILD) -j$(JOBS) --target pocketray
+	@tests/materials/room_sheet.py $(POCKETRAY) --folder $(BUILD)/room-sheet $(JSON:%=--json %) $(SHEET_OPTIONS)
+
 # Indirect light of rooms against full light transport: some from a seed, and those of strangers where they are.
 ROOMS ?= 56
 ROOM_FILES ?= $(wildcard ../shared/scenes/cornell/mcguire/*.obj ../shared/scenes/cornell/embree/*.obj ../shared/scenes/cornell/*.glb)
@@ -309,6 +315,7 @@ help:
 	@echo "make bench-device count instructions and estimated cycles per pixel for DEVICE=, by part (BENCH_OPTIONS=--effects: and"
 	@echo "                  by effect; JSON=FILE: write the table)"
 	@echo "make contact-sheet render sample models beside Cycles, the worst first (MODELS='Duck Fox': some, JSON=FILE)"
+	@echo "make room-sheet   render five lit rooms beside Cycles at full light transport (JSON=FILE, SHEET_OPTIONS='--rooms bar')"
 	@echo "make mach-bands    how visible the patches of radiosity are, by reconstruction: a table and a picture"
 	@echo "make format       run clang-format on all sources"
 	@echo "make tidy         run clang-tidy on all sources"

@@ -109,6 +109,11 @@ def area_radiance(lamp, matrix, say):
     return radiance
 
 
+def is_portal(lamp):
+    """True if the light only guides Cycles' rays to openings."""
+    return "cycles" in lamp and bool(lamp["cycles"].get("is_portal"))
+
+
 def luminous_mesh(light, say):
     lamp = light.data
     mesh = bpy.data.meshes.new(lamp.name)
@@ -132,7 +137,7 @@ def area_lights_as_meshes(context, say):
     added = []
     try:
         for light in [item for item in bpy.data.objects if item.type == "LIGHT" and item.users_collection]:
-            if light.data.type != "AREA" or light.data.energy <= 0:
+            if light.data.type != "AREA" or light.data.energy <= 0 or is_portal(light.data):
                 continue
             collections = [collection for collection in light.users_collection if collection.library is None]
             if not collections:
@@ -379,8 +384,8 @@ def export(context, path, options=(), objects="RENDERED", say=print):
         command = [program, "bake", model, "-o", path, *options]
         if not any(option.split("=")[0] == "--environment" for option in options):
             world = write_world(scene.world, folder)
+            command += ["--environment", world or "none"]  # a black world is no request for a studio
             if world is not None:
-                command += ["--environment", world]
                 names[world] = f"the world '{scene.world.name}'"
         run_bake(command, names, say)
 

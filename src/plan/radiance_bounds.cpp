@@ -15,6 +15,7 @@
 #include "indirect/environment.h"
 #include "scene/diffuse_transmission.h"
 #include "scene/metallic_roughness.h"
+#include "shade/ambient_gloss.h"
 #include "shade/dielectric.h"
 #include "shade/frame_data.h"
 #include "shade/lights.h"
@@ -22,12 +23,12 @@
 namespace pocketray {
 namespace {
 
-// Upper bound of the surroundings' light that a coat of strength 1 reflects.
-float coat_glow_bound(const FrameData& frame, const Material& coat, bool lit_by_environment) {
-  if (lit_by_environment) return environment_bound(*frame.scene, coat, frame.mask);
-  return has(frame.mask, Effect::ambient_gloss)
-             ? reflected_surroundings_bound(surroundings_max(*frame.scene, frame.mask), coat)
-             : 0;
+// Upper bound of the surroundings' light that a material, or a coat of strength 1, sends out.
+float glow_bound(const FrameData& frame, const Material& m, bool lit_by_environment) {
+  const Scene& scene = *frame.scene;
+  const bool is_even = lit_by_environment ? stores_surroundings(frame) : has(frame.mask, Effect::ambient_gloss);
+  const float even = is_even ? reflected_surroundings_bound(surroundings_max(scene, frame.mask), m) : 0;
+  return lit_by_environment ? even + environment_bound(scene, m, frame.mask) : even;
 }
 
 // Upper bounds of the radiance that surfaces of a material send out.
@@ -59,12 +60,9 @@ MaterialBound material_bound(const FrameData& frame, std::uint32_t index) {
   bound.own = max_component(m.emission) + (shines ? max_component(m.diffuse) : indirect_bound(scene, m, frame.mask));
   if (has(frame.mask, Effect::instant_radiosity) && !shines)
     bound.own += max_component(m.diffuse) * (virtual_lights_of(frame.indirect)->irradiance_max / kPiF);
-  if (lit_by_environment)
-    bound.own += environment_bound(scene, m, frame.mask);
-  else if (has(frame.mask, Effect::ambient_gloss))
-    bound.own += reflected_surroundings_bound(surroundings_max(scene, frame.mask), m);
+  bound.own += glow_bound(frame, m, lit_by_environment);
   const ClearCoat* coat = has(frame.mask, Effect::clear_coat) ? coat_of(scene, index) : nullptr;
-  if (coat) bound.own += coat->strength * coat_glow_bound(frame, coat_bounds(*coat), lit_by_environment);
+  if (coat) bound.own += coat->strength * glow_bound(frame, coat_bounds(*coat), lit_by_environment);
   bound.passed = max_component(m.mirror);
   if (!is_zero(m.transmission)) bound.passed += max_component(max(m.transmission, Vec3{1, 1, 1}));
   if (coat) bound.passed += coat->strength * coat_mirror_share(coat->roughness_low);

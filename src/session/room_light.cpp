@@ -10,9 +10,20 @@
 #include "session/scene_identity.h"
 
 namespace pocketray {
+namespace {
+
+bool reflects_anywhere(const Scene& scene) {
+  for (const Triangle& t : scene.triangles) {
+    const Material& m = scene.materials[t.material()];
+    if (!m.unlit && !(is_zero(m.diffuse) && is_zero(m.specular))) return true;
+  }
+  return false;
+}
+
+}  // namespace
 
 bool calls_for_radiosity(const Scene& scene) {
-  return scene.radiosity_triangles.empty() && can_solve_radiosity(scene) &&
+  return scene.radiosity_triangles.empty() && can_solve_radiosity(scene) && reflects_anywhere(scene) &&
          find_room(scene, scene_bounds(scene)).is_room;
 }
 

@@ -58,6 +58,11 @@ void add_coat(const FrameData& frame, const Ray& ray, float open, Surface* s) {
     effect_entered<Effect::environment>();
     const Vec3 irradiance = environment_irradiance(scene.environment_info[0], coat.normal);
     reflected = reflected_environment(scene, m, m.specular, coat.normal, ray.direction, irradiance);
+    if (stores_surroundings(frame)) {
+      const IndoorLight indoors = indoor_light(frame, *s, irradiance);
+      const float cosine = dot(coat.normal, ray.direction);
+      reflected = reflected * indoors.share + reflected_surroundings(indoors.even, m, m.specular, cosine);
+    }
   } else {
     effect_entered<Effect::ambient_gloss>();
     reflected = reflected_surroundings(even_surroundings(frame, *s), m, m.specular, dot(coat.normal, ray.direction));

@@ -36,7 +36,7 @@ def main():
     whole = os.path.getsize(out)
     light = next(item for item in bpy.data.objects if item.type == "LIGHT")
     for item in bpy.data.objects:
-        item.select_set(item == light)
+        item.select_set(item == light or item.type == "CAMERA")
     assert bpy.ops.export_scene.pocketray(filepath=out, objects="SELECTED", compressed=True) == {"FINISHED"}
     assert os.path.getsize(out) < whole
     assert bpy.ops.export_scene.pocketray(filepath=out, objects="VISIBLE", radiosity=True) == {"FINISHED"}

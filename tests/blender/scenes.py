@@ -125,6 +125,7 @@ def lamps():
     scene.camera = add_camera("camera", (0, 0, 3), (0, 0, 0), 2)
     light = add_light("AREA", (0, 0, 4), 200, (1, 0.5, 0.25), shape="RECTANGLE", size=2, size_y=1)
     light.scale = (1.5, 1.5, 1)
+    add_light("AREA", (0, 0, 2), 100, (1, 1, 1), size=1).data.cycles.is_portal = True  # shines on nothing
     save("area")
     floor.data.materials.clear()
     light.data.shape, light.data.size, light.data.size_y = "ELLIPSE", 3, 1

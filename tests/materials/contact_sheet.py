@@ -7,25 +7,20 @@ The models' own lights and cameras are left out.
 """
 import argparse
 import array
-import hashlib
 import json
 import math
 import os
 import shutil
 import struct
-import subprocess
 import sys
 
-HERE = os.path.dirname(os.path.abspath(__file__))
-WIDTH, HEIGHT = 320, 240
+import sheet
+from sheet import HEIGHT, WIDTH, fail
+
 SAMPLES, DEPTH = 16, 8
 MEAN_MAX = 0.05  # of all models
 SUNS = ({"direction": (0.35, 0.8, 0.5), "irradiance": 1.5}, {"direction": (-0.75, 0.35, 0.55), "irradiance": 0.5})
 WINDOW = {"direction": (-0.6, 0.3, 0.75), "cosine": 0.94, "radiance": 5.0}
-
-
-def fail(text):
-    sys.exit("contact_sheet: " + text)
 
 
 def unit(v):
@@ -95,21 +90,55 @@ def relight(document):
             scene.setdefault("nodes", []).append(len(document["nodes"]) - 1)
 
 
+def spell_out_instances(document, binary):
+    """Gives each instance of EXT_mesh_gpu_instancing a node, as Blender 3.4 ignores the extension. Only of floats."""
+    def values(index):
+        accessor = document["accessors"][index]
+        width = {"VEC3": 3, "VEC4": 4}[accessor["type"]]
+        view = document["bufferViews"][accessor["bufferView"]]
+        start = view.get("byteOffset", 0) + accessor.get("byteOffset", 0)
+        stride = view.get("byteStride", 4 * width)
+        return [struct.unpack_from(f"<{width}f", binary, start + stride * k) for k in range(accessor["count"])]
+
+    for node in list(document.get("nodes", [])):
+        instances = node.get("extensions", {}).pop("EXT_mesh_gpu_instancing", None)
+        if not instances:
+            continue
+        parts = {name.lower(): values(index) for name, index in instances["attributes"].items() if not name.startswith("_")}
+        mesh = node.pop("mesh")
+        for place in zip(*parts.values()):
+            node.setdefault("children", []).append(len(document["nodes"]))
+            document["nodes"].append({"mesh": mesh, **{name: list(value) for name, value in zip(parts, place)}})
+
+
+def copy_glb(source, path, change):
+    with open(source, "rb") as file:
+        data = file.read()
+    size = struct.unpack_from("<I", data, 12)[0]
+    document = json.loads(data[20:20 + size])
+    rest = data[20 + size:]
+    change(document, rest[8:])
+    text = json.dumps(document).encode()
+    text += b" " * (-len(text) % 4)
+    with open(path, "wb") as file:
+        file.write(struct.pack("<III", 0x46546C67, 2, 20 + len(text) + len(rest)))
+        file.write(struct.pack("<II", len(text), 0x4E4F534A) + text + rest)
+
+
+def copy_for_blender(path):
+    """A copy without what Blender does not read. Returns its path."""
+    if not path.endswith(".glb"):
+        return path
+    copy = path.removesuffix(".glb") + ".blender.glb"
+    copy_glb(path, copy, spell_out_instances)
+    return copy
+
+
 def copy_with_suns(source, folder):
     """A copy of a model, lit by the suns if it is glTF. Returns its path."""
     if source.endswith(".glb"):
-        with open(source, "rb") as file:
-            data = file.read()
-        size = struct.unpack_from("<I", data, 12)[0]
-        document = json.loads(data[20:20 + size])
-        relight(document)
-        text = json.dumps(document).encode()
-        text += b" " * (-len(text) % 4)
-        rest = data[20 + size:]
         path = os.path.join(folder, os.path.basename(source))
-        with open(path, "wb") as file:
-            file.write(struct.pack("<III", 0x46546C67, 2, 20 + len(text) + len(rest)))
-            file.write(struct.pack("<II", len(text), 0x4E4F534A) + text + rest)
+        copy_glb(source, path, lambda document, _: relight(document))
         return path
     folder = os.path.join(folder, os.path.basename(source) + ".files")
     shutil.rmtree(folder, ignore_errors=True)
@@ -150,73 +179,27 @@ def display(radiance_file, picture):
             file.write(bytes(level(max(x, 0)) for x in values[3 * width * row:3 * width * (row + 1)]))
 
 
-def run(command, **options):
-    done = subprocess.run(command, capture_output=True, text=True, **options)
-    return done.returncode, done.stdout, done.stderr.strip()
-
-
-def forget_others(folder, light):
-    """Removes Cycles' pictures that were made by another script or in another light."""
-    with open(os.path.join(HERE, "cycles.py")) as script, open(light["environment"], "rb") as environment:
-        made_by = [script.read(), hashlib.sha256(environment.read()).hexdigest(), json.dumps([light, SUNS])]
-    path = os.path.join(folder, "made-by.json")
-    if os.path.exists(path):
-        with open(path) as file:
-            if json.load(file) == made_by:
-                return
-    for name in os.listdir(folder):
-        if name.endswith(".cycles.png"):
-            os.remove(os.path.join(folder, name))
-    with open(path, "w") as file:
-        json.dump(made_by, file)
-
-
 def judge(program, model, camera, folder, environment):
     """Renders with pocketray and compares. Returns the row of the table; None if it cannot be rendered."""
     picture, radiance_file, difference = (os.path.join(folder, model["name"] + end)
                                           for end in (".pocketray.ppm", ".pocketray.pfm", ".flip.png"))
-    status, _, messages = run([program, "render", model["file"], "--size", f"{WIDTH}x{HEIGHT}", "--samples", str(SAMPLES),
-                               "--depth", str(DEPTH), "--memory", "1G", "--camera", camera, "--environment", environment,
-                               "-o", radiance_file])
+    status, _, messages = sheet.run([program, "render", model["file"], "--size", f"{WIDTH}x{HEIGHT}", "--samples",
+                                     str(SAMPLES), "--depth", str(DEPTH), "--memory", "1G", "--indirect", "ambient",
+                                     "--camera", camera, "--environment", environment, "-o", radiance_file])
     if status:
         print(f"{model['name']}: {messages.splitlines()[-1]}", file=sys.stderr)
         return None
     display(radiance_file, picture)
-    status, text, _ = run([program, "compare", model["picture"], picture, "-o", difference, "--json", "-"])
-    if status:
-        fail(f"{model['name']}: {text}")
-    warnings = [line.removeprefix("pocketray: ") for line in messages.splitlines()
-                if line.startswith("pocketray: ") and "framing its bounds" not in line]
-    return {"model": model["name"], "flip": json.loads(text)["flip"], "warnings": warnings,
+    return {"model": model["name"], "flip": sheet.flip(program, model["picture"], picture, difference),
+            "warnings": sheet.warnings_in(messages, "framing its bounds", "--indirect has no effect"),
             "pictures": [picture, model["picture"], difference]}
-
-
-def draw(rows, columns, colors, sheet):
-    """Labels have two lines: the longest names fill the width of a picture."""
-    labelled = []
-    for row in rows:
-        for label, picture in zip((row["model"], "Cycles", "ꟻLIP"), row["pictures"]):
-            value = f"{row['flip']:.3f}" if label == "ꟻLIP" else " "
-            labelled += ["-label", f"{label}\n{value}", picture]
-    status, _, messages = run(["montage", "-font", "DejaVu-Sans", "-pointsize", "10", *labelled, "-tile",
-                               f"{3 * columns}x", "-geometry", "160x120+2+2", "-alpha", "remove", "-alpha", "off", sheet])
-    if not status and colors:
-        status, _, messages = run(["convert", sheet, "-dither", "None", "-colors", str(colors), "PNG8:" + sheet])
-    if status:
-        fail("montage: " + messages)
-    print(f"the sheet: {sheet}")
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("program", help="pocketray, with importers")
+    sheet.add_options(parser, "build/contact-sheet", 64, 4)
     parser.add_argument("--shared", default="../shared", help="where scenes/ is")
     parser.add_argument("--models", nargs="+", metavar="NAME", help="only these, by name without ending")
-    parser.add_argument("--samples", type=int, default=64, help="Cycles' samples a pixel (64)")
-    parser.add_argument("--folder", default="build/contact-sheet", help="where pictures go; Cycles' are kept there")
-    parser.add_argument("--columns", type=int, default=4, help="models side by side on the sheet (4)")
-    parser.add_argument("--colors", type=int, help="colours of the sheet's palette, for a small file; all otherwise")
-    parser.add_argument("--json", metavar="FILE", help="also write the table as JSON")
     parser.add_argument("--fail-above", type=float, metavar="MEAN",
                         help=f"exit with 1 if the mean ꟻLIP exceeds it ({MEAN_MAX} for all models)")
     arguments = parser.parse_args()
@@ -224,9 +207,7 @@ def main():
     if not os.path.isdir(scenes):
         print(f"skipped: {scenes} is not there")
         return
-    for tool in ("blender", "montage"):
-        if not shutil.which(tool):
-            fail(f"{tool} is missing: toolchains/setup.sh contact-sheet installs it")
+    sheet.check_tools()
     folder = os.path.abspath(arguments.folder)
     os.makedirs(os.path.join(folder, "models"), exist_ok=True)
     found = models_in(scenes)
@@ -237,9 +218,11 @@ def main():
     environment = os.path.join(folder, "environment.hdr")
     write_environment(environment)
     suns = [dict(sun, direction=unit(sun["direction"])) for sun in SUNS]
-    light = {"width": WIDTH, "height": HEIGHT, "samples": arguments.samples, "depth": DEPTH, "environment": environment}
-    forget_others(folder, light)
-    jobs = dict(light, models=[{"name": name, "file": copy_with_suns(found[name], os.path.join(folder, "models")),
+    light = {"width": WIDTH, "height": HEIGHT, "samples": arguments.samples, "depth": DEPTH, "diffuse_bounces": 0, "clamp": 0,
+             "environment": environment}
+    sheet.forget_others(folder, ".cycles.png", ("cycles.py", "cycles_picture.py"), light, SUNS, sheet.digest(environment))
+    files = {name: copy_with_suns(found[name], os.path.join(folder, "models")) for name in names}
+    jobs = dict(light, models=[{"name": name, "file": files[name], "blender file": copy_for_blender(files[name]),
                                 "suns": [] if found[name].endswith(".obj") else suns,
                                 "picture": os.path.join(folder, name + ".cycles.png")} for name in names])
     path = os.path.join(folder, "jobs.json")
@@ -248,11 +231,9 @@ def main():
     print(f"rendering {len(names)} models with Cycles", flush=True)
     if os.path.exists(path + ".cameras"):
         os.remove(path + ".cameras")
-    status, output, messages = run(["blender", "--background", "--factory-startup", "--python",
-                                    os.path.join(HERE, "cycles.py"), "--", path],
-                                   env=dict(os.environ, PATH="/usr/bin:/bin"))  # where Blender looks for Python's modules
-    if status or not os.path.exists(path + ".cameras"):
-        fail("Blender failed:\n" + messages + output[-2000:])
+    failed, messages = sheet.run_blender(os.path.join(sheet.HERE, "cycles.py"), path)
+    if failed or not os.path.exists(path + ".cameras"):
+        fail("Blender failed:\n" + (failed or messages[-2000:]))
     with open(path + ".cameras") as file:
         answer = json.load(file)
     cameras = answer["cameras"]
@@ -260,21 +241,8 @@ def main():
         print(f"{name}: Blender: {reason}", file=sys.stderr)
     rows = [judge(arguments.program, model, cameras[model["name"]], folder, environment) for model in jobs["models"]
             if model["name"] in cameras]
-    rows = sorted((row for row in rows if row), key=lambda row: -row["flip"])
-    if not rows:
-        fail("no model could be rendered by both")
-    for row in rows:
-        print(f"{row['flip']:.3f}  {row['model']}" + "".join("\n       " + text for text in row["warnings"]))
-    mean = sum(row["flip"] for row in rows) / len(rows)
-    print(f"{mean:.3f}  mean of {len(rows)}; left out: " +
-          (", ".join(sorted(set(names) - {row["model"] for row in rows})) or "none"))
-    draw(rows, arguments.columns, arguments.colors, os.path.join(folder, "sheet.png"))
-    if arguments.json:
-        with open(arguments.json, "w") as file:
-            json.dump([{key: row[key] for key in ("model", "flip", "warnings")} for row in rows], file, indent=2)
     limit = arguments.fail_above if arguments.models or arguments.fail_above is not None else MEAN_MAX
-    if limit is not None and mean > limit:
-        fail(f"the mean ꟻLIP is {mean:.3f}, more than {limit:g}")
+    sheet.report(rows, names, arguments, limit)
 
 
 if __name__ == "__main__":

@@ -2,8 +2,8 @@
 
     blender --background --factory-startup --python cycles.py -- JOBS.json
 
-JOBS.json: width, height, samples, depth, environment (an equirectangular .hdr) and models, each with a name, a file, the
-picture to write and suns, which have a direction, towards the sun, and an irradiance, in the model's axes. The camera is
+JOBS.json: what cycles_picture.py takes, environment (an equirectangular .hdr) and models, each with a name, a file for
+Blender, the picture to write and suns, which have a direction, towards the sun, and an irradiance, in the model's axes. The camera is
 chosen here, so that it sees all of the model from a little above; JOBS.json.cameras receives those of the models that
 could be rendered, as pocketray's --camera takes them, and of the others the reason. Axes of files are glTF's, y up.
 """
@@ -15,6 +15,9 @@ import sys
 import bpy
 import numpy
 from mathutils import Matrix, Vector
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from cycles_picture import write_picture  # noqa: E402
 
 numpy.bool = bool  # Debian's Blender 3.4 still uses the name that its numpy dropped
 
@@ -234,26 +237,6 @@ def use_gltf_diffuse(tree):
             tree.links.new(mix.outputs[0], target)
 
 
-def render(jobs, path):
-    scene = bpy.context.scene
-    scene.render.engine = "CYCLES"
-    scene.cycles.device, scene.cycles.samples = "CPU", jobs["samples"]
-    scene.cycles.use_denoising = scene.cycles.use_adaptive_sampling = False
-    scene.cycles.pixel_filter_type = "BOX"
-    scene.cycles.filter_width = 1
-    scene.cycles.sample_clamp_indirect = 0
-    # Direct light and environment, by any number of mirrors and panes up to the depth: no light from diffuse surfaces.
-    scene.cycles.max_bounces = scene.cycles.glossy_bounces = scene.cycles.transmission_bounces = jobs["depth"]
-    scene.cycles.transparent_max_bounces, scene.cycles.diffuse_bounces = 64, 0
-    scene.render.resolution_x, scene.render.resolution_y = jobs["width"], jobs["height"]
-    scene.render.resolution_percentage, scene.render.film_transparent = 100, False
-    scene.view_settings.view_transform, scene.view_settings.look = "Standard", "None"
-    scene.render.image_settings.file_format, scene.render.image_settings.color_mode = "PNG", "RGB"
-    scene.render.image_settings.color_depth, scene.render.dither_intensity = "8", 0
-    scene.render.filepath = path
-    bpy.ops.render.render(write_still=True)
-
-
 def main():
     path = sys.argv[sys.argv.index("--") + 1]
     with open(path) as file:
@@ -261,12 +244,12 @@ def main():
     cameras, reasons = {}, {}
     for model in jobs["models"]:
         try:
-            load(model["file"])
+            load(model["blender file"])
             eye, target = camera_for(jobs["width"] / jobs["height"])
             if not os.path.exists(model["picture"]):
                 place_camera(eye, target)
                 light(jobs, model["suns"])
-                render(jobs, model["picture"])
+                write_picture(jobs, model["picture"])
             numbers = lambda v: ",".join(f"{x:.9g}" for x in v)
             cameras[model["name"]] = f"{numbers(eye)} {numbers(target)} 0,1,0 {FIELD_OF_VIEW:g}"
         except (RuntimeError, ValueError) as error:  # a model that Blender does not read

@@ -7,6 +7,7 @@
 #include "radiosity/loose.h"
 #include "scene/builtin_helpers.h"
 #include "support/hard_case.h"
+#include "support/test_environment.h"
 
 using namespace pocketray;
 
@@ -131,4 +132,44 @@ TEST_CASE("a_small_lamp_under_the_open_sky_is_solved") {
   const double below = .5 * arrives * area / (kPi * h * h);
   MESSAGE(most, ", by closed form ", below);
   CHECK(std::fabs(static_cast<double>(most) / below - 1) < .1);
+}
+
+// Goal: a floor gets the light of the sky that its window shows, not the sky's mean, and every node about the same.
+// Method: a dark room whose ceiling has a hole, under a sky that is bright overhead; the floor below the hole by
+// the sum over it.
+TEST_CASE("rooms_get_the_sky_that_their_windows_show") {
+  GeneratedScene s;
+  Material m;
+  m.diffuse = {.5f, .5f, .5f}, m.specular = {0, 0, 0}, m.double_sided = 1;
+  const std::uint32_t floor = add_material(&s, m);
+  m.diffuse = {.02f, .02f, .02f};
+  const std::uint32_t dark = add_material(&s, m);
+  constexpr float kEdge = 2, kHole = .3f, kHeight = 2;
+  add_quad(&s, {-kEdge, 0, kEdge}, {kEdge, 0, kEdge}, {kEdge, 0, -kEdge}, {-kEdge, 0, -kEdge}, floor);
+  auto ceiling = [&](float x0, float x1, float z0, float z1) {
+    add_quad(&s, {x0, kHeight, z0}, {x1, kHeight, z0}, {x1, kHeight, z1}, {x0, kHeight, z1}, dark);
+  };
+  ceiling(-kEdge, -kHole, -kEdge, kEdge), ceiling(kHole, kEdge, -kEdge, kEdge);
+  ceiling(-kHole, kHole, -kEdge, -kHole), ceiling(-kHole, kHole, kHole, kEdge);
+  for (float side : {-kEdge, kEdge}) {
+    add_quad(&s, {side, 0, -kEdge}, {side, kHeight, -kEdge}, {side, kHeight, kEdge}, {side, 0, kEdge}, dark);
+    add_quad(&s, {-kEdge, 0, side}, {kEdge, 0, side}, {kEdge, kHeight, side}, {-kEdge, kHeight, side}, dark);
+  }
+  aim(&s, {0, 1, .01f}, {0, 0, 0}, 20);
+  s.bind();
+  auto radiance = [](const Vec3d& way) { return way.y > 0 ? .1 + 10 * way.y * way.y : .1; };
+  const TestEnvironment sky(16, 16, {1, 1, 1}, [&](const Vec3d& way, int) { return Vec3d{1, 1, 1} * radiance(way); });
+  sky.give(&s.scene);
+  s.scene.info.background = {2, 2, 2};
+  double below = 0;
+  const int side = 40;
+  for (int i = 0; i < side * side; ++i) {
+    const double x = (i % side + .5) * 2 * kHole / side - kHole, z = (i / side + .5) * 2 * kHole / side - kHole;
+    const double square = x * x + z * z + kHeight * kHeight, area = 4 * kHole * kHole / side / side;
+    const Vec3d way = normalize(Vec3d{x, kHeight, z});
+    below += radiance(way) * kHeight * kHeight / (kPi * square * square) * area;
+  }
+  const double worst = worst_error(baked_picture(s.scene, 300), .5 * below);
+  MESSAGE("largest error: ", worst);
+  CHECK(worst < .25);
 }

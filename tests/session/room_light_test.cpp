@@ -13,6 +13,7 @@
 #include "session/picture.h"
 #include "session/scene_identity.h"
 #include "support/cache_folder.h"
+#include "support/generated_scene.h"
 
 using namespace pocketray;
 
@@ -73,6 +74,24 @@ TEST_CASE("only_rooms_are_lit_unasked") {
   other.settings["indirect"].choice = "ambient";
   CHECK(light_of(other).empty());
   CHECK(cache.names().empty());
+}
+
+// Goal: a room whose surfaces reflect nothing is opened as it is, not refused. Method: a lit box of grey walls, of
+// unlit and of black ones.
+TEST_CASE("rooms_that_reflect_nothing_are_not_lit") {
+  auto calls = [](const Material& m) {
+    GeneratedScene s;
+    add_box(&s, {-1, -1, -1}, {1, 1, 1}, add_material(&s, m), true);
+    aim(&s, {0, 0, 0}, {0, 0, -1}, 60);
+    s.lights.resize(1);
+    s.bind();
+    return calls_for_radiosity(s.scene);
+  };
+  Material grey, unlit, black;
+  unlit.unlit = 1, black.diffuse = black.specular = {0, 0, 0};
+  CHECK(calls(grey));
+  CHECK_FALSE(calls(unlit));
+  CHECK_FALSE(calls(black));
 }
 
 // Goal: a broken file is not used, and mended. Method: every header byte and some others changed, the end cut off.

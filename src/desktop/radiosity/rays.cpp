@@ -8,6 +8,7 @@
 #include "base/check.h"
 #include "base/fmath.h"
 #include "base/rng.h"
+#include "indirect/environment.h"
 #include "shade/lights.h"
 #include "shade/surface.h"
 
@@ -56,6 +57,11 @@ bool is_visible(const SceneRays& rays, const Receiver& from, const Vec3d& to, Ba
   return is_clear(rays, {origin, way, 1}, way, backs);
 }
 
+Vec3d sky_radiance(const Scene& scene, const Vec3& direction) {
+  if (!environment_of(scene)) return to_double(scene.info.background);
+  return to_double(environment_gloss(scene, direction, kGlossRoughness[0] * kGlossRoughness[0]));
+}
+
 Outlook look_around(const SceneRays& rays, const Receiver& from, std::uint32_t count, std::uint32_t seed) {
   const std::uint32_t side = static_cast<std::uint32_t>(std::sqrt(static_cast<double>(count)) + 0.5);
   CHECK_EQ(side * side, count);
@@ -80,6 +86,7 @@ Outlook look_around(const SceneRays& rays, const Receiver& from, std::uint32_t c
                                             rays.has_sheets ? &seen : rays.filter(), &hit, &stats);
     if (hit.triangle == kNoTriangle) {
       outlook.open += 1.0 / count;
+      outlook.sky += sky_radiance(*rays.frame.scene, direction) / static_cast<double>(count);
       continue;
     }
     const Triangle& t = rays.frame.scene->triangles[hit.triangle];

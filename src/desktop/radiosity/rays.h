@@ -15,6 +15,9 @@ struct SceneRays {
   const HitFilter* filter() const { return frame.filters.every_shadow ? &opaque : nullptr; }
 };
 
+// Radiance of the environment, without its sun, or of the background.
+Vec3d sky_radiance(const Scene& scene, const Vec3& direction);
+
 constexpr std::uint32_t kPatchRays = 36;  // from each of a patch's samples, to see what surrounds it
 
 struct Receiver {
@@ -29,6 +32,7 @@ bool is_visible(const SceneRays& rays, const Receiver& from, const Vec3d& to, Ba
 // Shares of the cosine-weighted hemisphere over a receiver: no surface; a surface's front; the back of one.
 struct Outlook {
   double open = 0, front = 0, back = 0;
+  Vec3d sky = {0, 0, 0};  // radiance of the environment or background, times `open`
 };
 // Sheets are seen through from behind. `seed` turns the pattern of `count` rays, a square number.
 Outlook look_around(const SceneRays& rays, const Receiver& from, std::uint32_t count, std::uint32_t seed);

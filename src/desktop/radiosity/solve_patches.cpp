@@ -18,6 +18,7 @@ Outlook look_around_patch(const SceneRays& rays, const Patch& patch, std::uint32
     const Outlook one = look_around(rays, at, kPatchRays, seed * kPatchSamples + static_cast<std::uint32_t>(k));
     mean.open += one.open / kPatchSamples;
     mean.front += one.front / kPatchSamples, mean.back += one.back / kPatchSamples;
+    mean.sky += one.sky * (1.0 / kPatchSamples);
   }
   return mean;
 }
@@ -46,8 +47,7 @@ std::vector<Vec3d> first_light(const SceneRays& rays, const std::vector<Patch>& 
     const Vec3d irradiance = mean_light(rays, patches[i]);
     const bool shines = !patches[i].is_back || patches[i].double_sided;
     first[i] =
-        (shines ? patches[i].emission : Vec3d{0, 0, 0}) +
-        patches[i].albedo * (irradiance * (1 / kPi) + to_double(rays.frame.scene->info.background) * looks[i].open);
+        (shines ? patches[i].emission : Vec3d{0, 0, 0}) + patches[i].albedo * (irradiance * (1 / kPi) + looks[i].sky);
   });
   return first;
 }

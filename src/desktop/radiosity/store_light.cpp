@@ -13,6 +13,8 @@ namespace pocketray {
 namespace {
 
 constexpr std::uint32_t kNodeRays = 64;
+// Where there is a sky. A window that fills a thirtieth of the hemisphere is met by 34 of them.
+constexpr std::uint32_t kSkyRays = 1024;
 constexpr double kCovered = 0.9;      // share of back faces around a node that lies inside a body
 constexpr double kBesideBacks = 0.5;  // share from which on a node may lie inside, and sees none through them
 constexpr double kSeen = 0.1;  // share of patches in what closes a node's surroundings, below which it lies inside, too
@@ -61,7 +63,8 @@ PatchLight light_of(const PatchSolution& solved) {
 // x: the receiver lies inside a body.
 Vec3d gather(const SceneRays& rays, const PatchLight& light, const Receiver& at, std::uint32_t material, bool on_grid,
              std::uint32_t seed) {
-  const Outlook outlook = look_around(rays, at, kNodeRays, seed);
+  const std::uint32_t ray_count = is_zero(rays.frame.scene->info.background) ? kNodeRays : kSkyRays;
+  const Outlook outlook = look_around(rays, at, ray_count, seed);
   if (outlook.back > kCovered) return {-1, 0, 0};
   const Backs backs = on_grid && outlook.back < kBesideBacks ? Backs::hide_nothing
                       : rays.has_sheets                      ? Backs::of_bodies_hide
@@ -79,8 +82,8 @@ Vec3d gather(const SceneRays& rays, const PatchLight& light, const Receiver& at,
   // by few rays, unless that share is the less certain.
   const double closed = outlook.front + outlook.back;
   if (closed > 0.5 && seen < kSeen * closed) return {-1, 0, 0};
-  if (seen > 0) sum = sum * std::min(2.0, credible_sum(seen, closed, kNodeRays) / seen);
-  return sum + to_double(rays.frame.scene->info.background) * outlook.open;
+  if (seen > 0) sum = sum * std::min(2.0, credible_sum(seen, closed, ray_count) / seen);
+  return sum + outlook.sky;
 }
 
 Status store_light(const PatchSolution& solved, const Surfaces& surfaces, const RadiosityOptions& options,
