@@ -67,7 +67,9 @@ if [ ${#run[@]} = 1 ] && "${run[@]}" --help | grep -q '^ *serve '; then
   wait_for $server grep -q '^listening' serve.out
   address=$(sed -n 's/^listening on \([0-9.:]*\): .*/\1/p' serve.out)
   for scene in levels.pray floor.obj; do
-    expect "share_$scene" 0 'servers sent [1-9]' render $scene "${view[@]}" --texture-max 64 --server "$address" --frames 0:2 -o "shared_$scene.ppm"
+    share=(render $scene "${view[@]}" --texture-max 64 --server "$address" --frames 0:2 -o "shared_$scene.ppm")
+    expect "share_$scene" 0 'render servers: the device rendered' "${share[@]}"
+    check "share_${scene}_is_known" test "$("${run[@]}" "${share[@]}" 2>&1 | grep -cE 'wrong pixels|does not have|unreachable')" = 0
     for frame in 0 1 2; do
       check "shared_${scene}_${frame}_is_as_alone" cmp -s coarse.ppm "shared_$scene-000$frame.ppm"
     done
