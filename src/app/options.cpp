@@ -117,12 +117,17 @@ void add_exposure(Command command, CommonOptions* o) {
 void add_memory_and_devices(Command command, CommonOptions* o) {
   command.chapter("Memory and devices");
   command.add_option("--memory SIZE", o->memory, "size of the one memory block")
-      .default_str("64M, or the device's")
+      .default_str(std::to_string(kMemoryUsual >> 20) + "M, or the device's")
       .details(
           "It holds everything. Bytes, or K, M or G of them (24M, 24MB and 24MiB are equal), 64K … 64G. A system with "
           "less free memory has "
           "a "
           "smaller default.");
+  command.add_option("--texture-max N", o->texture_side_max, "leave out levels of textures with more texels a side")
+      .range(1, kTextureSideMax)
+      .default_str("what fits in --memory")
+      .details("Textures without smaller levels stay. Models are read with at most " +
+               std::to_string(kTextureSideUsual) + " texels a side; `pocketray bake --texture-max` stores more.");
   command.add_option("--device NAME", o->device, "use a device's memory size and, in view, its buttons")
       .details(all_device_names());
   command.add_option("--emulate NAME", o->emulate, "imitate a device's speed, memory, cores and screen")

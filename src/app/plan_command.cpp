@@ -168,6 +168,7 @@ int run(const CommonOptions& options, bool prices) {
                    {"triangles", renderer.scene.triangles.count},
                    {"fits", status.ok},
                    {"accelerator", renderer.accel.info->name},
+                   {"texture_side_max", renderer.settings.texture_side_max},
                    {"coherence", renderer.history.state.planned},
                    {"quality", levels_json(renderer, levels)},
                    {"radiosity_offer", offer_json(offer)},

@@ -133,9 +133,10 @@ inline constexpr SettingRow kSettingList[] = {
      nullptr,
      ""},
     {"indirect", "light from other surfaces",
-     "auto: radiosity, stored or, on desktops, solved for a lit room; otherwise ambient", nullptr,
-     choice_field<&Quality::indirect>(kIndirectNames.names), 1, kIndirectEffects, kIndirectEffects, true, kAsAsked,
-     indirect_sweep(), nullptr, ""},
+     "auto: radiosity, stored or, on desktops, solved for a lit room; otherwise ambient. instant-radiosity is worth "
+     "its time where no radiosity is stored, best with --virtual-lights 256 and --compensation rays",
+     nullptr, choice_field<&Quality::indirect>(kIndirectNames.names), 1, kIndirectEffects, kIndirectEffects, true,
+     kAsAsked, indirect_sweep(), nullptr, ""},
     {"reconstruction",
      "how baked radiosity is interpolated between samples",
      "quadratic and cubic also smooth triangles",

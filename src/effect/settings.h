@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "base/limits.h"
 #include "base/tone.h"
 #include "effect/effect.h"
 
@@ -59,6 +60,8 @@ struct Settings : Quality {
   std::uint32_t threads = 1;
   EffectMask forced_on = 0, forced_off = 0;  // --effects
   Tone tone = Tone::clip;
+  // Leaves out larger levels of textures (scene/texture_side.h); does not change from frame to frame.
+  std::uint32_t texture_side_max = kTextureSideMax;
   std::size_t memory_bytes = 64u << 20;  // the fixed block
   CoherenceMode coherence = CoherenceMode::off;
   std::uint32_t coherence_table = 16;  // blocks of pixels along each side, one bit of each voxel's table [Jevans92]

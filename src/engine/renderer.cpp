@@ -17,6 +17,7 @@
 #include "plan/plan_lights.h"
 #include "plan/plan_scene.h"
 #include "plan/radiance_bounds.h"
+#include "scene/texture_side.h"
 #include "shade/camera.h"
 #include "shade/edges.h"
 #include "shade/interleaved.h"
@@ -72,6 +73,22 @@ namespace {
 
 bool moves(const Renderer& renderer) {
   return has(renderer.effects.mask, Effect::animation) && is_animated(renderer.scene);
+}
+
+// Replaces the table of textures by one without levels beyond the settings' side. The scene may be shared with other
+// renderers, so the table is a copy.
+Status limit_textures(Renderer* renderer) {
+  const std::uint32_t side_max = renderer->settings.texture_side_max;
+  const Array<const Texture> textures = renderer->scene.textures;
+  if (!any_levels_beyond(textures, side_max)) return success();
+  const std::size_t bytes = arena_need<Texture>(textures.count);
+  if (bytes > arena_free(renderer->memory.scene))
+    return failure("the scene's table of textures needs %zu KiB of memory: allow more", bytes / 1024 + 1);
+  const Array<Texture> limited = arena_array<Texture>(&renderer->memory.scene, textures.count);
+  for (std::uint32_t i = 0; i < textures.count; ++i) limited[i] = without_levels_beyond(textures[i], side_max);
+  renderer->scene.textures = limited;
+  renderer->memory.texture_table_bytes = bytes;
+  return success();
 }
 
 Arena take_front(Arena* rest, const char* name, std::size_t bytes) {
@@ -146,8 +163,11 @@ void start_renderer(void* block, std::size_t block_bytes, const Settings& settin
       renderer->memory.scene.capacity;  // aligning the block's start may have lost a few bytes
 }
 
-Status plan_renderer(Renderer* renderer, const SceneStorage& storage, const OutputNeed& output) {
+Status plan_renderer(Renderer* renderer, const SceneStorage& loaded, const OutputNeed& output) {
   RETURN_IF_ERROR(validate_settings(renderer->settings));
+  RETURN_IF_ERROR(limit_textures(renderer));
+  SceneStorage storage = loaded;
+  storage.arena_bytes = size_sum(storage.arena_bytes, renderer->memory.texture_table_bytes);
   if (renderer->view.camera_index > 0 && renderer->view.camera_index >= renderer->scene.cameras.count)
     return failure("there is no camera %u: the scene has %u, counted from 0", renderer->view.camera_index,
                    renderer->scene.cameras.count);
@@ -265,6 +285,7 @@ Status change_settings(Renderer* renderer, const Settings& settings) {
   CHECK_EQ(settings.width, now.width);
   CHECK_EQ(settings.height, now.height);
   CHECK_EQ(settings.threads, now.threads);
+  CHECK_EQ(settings.texture_side_max, now.texture_side_max);
   CHECK_EQ(settings.forced_on, now.forced_on);
   CHECK_EQ(settings.forced_off, now.forced_off);
   RETURN_IF_ERROR(validate_settings(settings));

@@ -28,6 +28,7 @@ struct Look {
 struct RendererMemory {
   MemoryPlan plan;
   Arena scene, persistent, frame;
+  std::size_t texture_table_bytes = 0;  // in the scene arena, of textures without levels that the scene has
 };
 
 struct RendererAccel {
@@ -116,7 +117,7 @@ void complete_scene(Renderer* renderer);
 
 // Second step, with renderer->scene set: adds a missing camera and lights, plans effects and memory. On failure the
 // plans are filled as far as they got, so that they can be shown. `output` as in plan_memory().
-Status plan_renderer(Renderer* renderer, const SceneStorage& storage, const OutputNeed& output);
+Status plan_renderer(Renderer* renderer, const SceneStorage& loaded, const OutputNeed& output);
 
 // Third step: carves the arenas, builds the accelerator, poses the scene at time 0. Call it only once.
 Status build_renderer(Renderer* renderer);

@@ -104,6 +104,7 @@ Status parse_effects(const char* text, Settings* settings) {
 Status validate_settings(const Settings& settings) {
   RETURN_IF_ERROR(check_limit(Quantity::width, settings.width));
   RETURN_IF_ERROR(check_limit(Quantity::height, settings.height));
+  RETURN_IF_ERROR(check_limit(Quantity::texture_side, settings.texture_side_max));
   for (const SettingRow& row : kSettingList) RETURN_IF_ERROR(check_setting(row, row.field.get(settings)));
   if (settings.threads >= 1 && settings.threads <= kThreadCountMax) return success();
   return failure("the number of threads is %u: it must lie in 1 … %u", settings.threads, kThreadCountMax);

@@ -141,7 +141,7 @@ Status plan_memory(const Scene& scene, const Settings& settings, const EffectPla
   Status status = plan_memory_with(scene, settings, effects, accel, storage, lights, output, wanted, plan);
   if (wanted && !status.ok) {
     wanted = false;
-    why = "coherence does not fit into memory";
+    why = kCoherenceTooLarge;
     status = plan_memory_with(scene, settings, effects, accel, storage, lights, output, wanted, plan);
   }
   if (without_coherence) *without_coherence = why;

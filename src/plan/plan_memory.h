@@ -49,6 +49,9 @@ struct OutputNeed {
   OutputNeed(std::size_t bytes) : output_bytes(bytes) {}
 };
 
+// Why every frame is traced whole if tracing only what changes does not fit.
+inline constexpr const char* kCoherenceTooLarge = "coherence does not fit into memory";
+
 // Plans the block.
 // Fails with the figures and a setting that would fit if the total exceeds settings.memory_bytes; fills the plan in
 // either case.

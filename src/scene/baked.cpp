@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "base/check.h"
+#include "scene/baked_layout.h"
 
 namespace pocketray {
 namespace {
@@ -35,27 +36,6 @@ static_assert(sizeof(EnvironmentInfo) == 3 * 4 + 10 * 12, "no padding");
 static_assert(sizeof(RadiosityNode) == 4 * 12 && sizeof(RadiosityCorners) == 12 && sizeof(RadiositySplit) == 8 &&
                   sizeof(RadiosityCut) == 2 * 12 + 2 * 4,
               "no padding");
-
-constexpr std::uint64_t kSectionAlignment = 64;
-constexpr std::uint8_t kMagic[8] = {0x89, 'P', 'R', 'A', 'Y', '\r', '\n', 0x1A};  // as PNG: text-mode copies damage it
-
-struct FileHeader {
-  std::uint8_t magic[8];
-  std::uint32_t version;
-  std::uint32_t checksum;  // CRC-32 of everything after this field
-  std::uint64_t byte_count;
-  std::uint32_t section_count;
-  std::uint32_t reserved[9];  // zero
-};
-static_assert(sizeof(FileHeader) == 64, "no padding");
-constexpr std::size_t kChecksumBegin = 16;
-
-struct Section {
-  std::uint32_t kind, element_bytes;
-  std::uint64_t offset;  // from the start of the file
-  std::uint32_t count, reserved;
-};
-static_assert(sizeof(Section) == 24, "no padding");
 
 // Calls visit(name, array) for every array of the scene. A section's kind and its place in the file are given by its
 // position here: append new arrays at the end and raise kBakedVersion.
@@ -114,32 +94,6 @@ void for_each_array(SceneType& scene, Visit visit) {
   visit("environment_suns", scene.environment_suns);
   visit("diffuse_transmissions", scene.diffuse_transmissions);
 }
-constexpr std::uint32_t kArrayCount = 52;
-constexpr std::uint32_t kSectionCount = 1 + kArrayCount;  // kind 0 is SceneInfo
-
-constexpr std::uint64_t aligned(std::uint64_t offset) {
-  return (offset + kSectionAlignment - 1) / kSectionAlignment * kSectionAlignment;
-}
-constexpr std::uint64_t first_offset(std::uint32_t section_count) {
-  return aligned(sizeof(FileHeader) + section_count * sizeof(Section));
-}
-// Older files lack the last arrays.
-constexpr std::uint32_t section_count_of(std::uint32_t version) {
-  return version < 8    ? 33
-         : version < 9  ? 35
-         : version < 10 ? 37
-         : version < 11 ? 38
-         : version < 12 ? 40
-         : version < 13 ? 41
-         : version < 14 ? 44
-         : version < 15 ? 45
-         : version < 17 ? 46
-         : version < 18 ? 47
-         : version < 19 ? 48
-         : version < 20 ? 52
-                        : kSectionCount;
-}
-
 // zlib counts in uInt, which may be narrower than size_t.
 std::uint32_t crc(std::uint32_t start, const void* bytes, std::size_t byte_count) {
   CHECK(bytes != nullptr || byte_count == 0);

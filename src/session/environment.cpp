@@ -90,8 +90,9 @@ Status set_environment_if_requested(const std::string& name, Renderer* renderer,
   };
   keep(scene->environment_info), keep(scene->environment_texels), keep(scene->lights);
   keep(scene->environment_suns);
-  const ContentHash parts[2] = {content_hash(source->baked, source->baked_bytes),
-                                content_hash(scene->environment_texels.data, scene->environment_texels.bytes())};
+  const ContentHash parts[2] = {
+      source->has_all_levels ? content_hash(source->baked, source->baked_bytes) : source->whole,
+      content_hash(scene->environment_texels.data, scene->environment_texels.bytes())};
   source->environment = content_hash(parts, sizeof parts);
   source->baked = nullptr, source->baked_bytes = 0;  // it is no longer the file's scene
   storage->arena_bytes = arena->used;

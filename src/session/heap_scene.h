@@ -19,12 +19,12 @@ struct HeapScene {
 #endif
 };
 
-// Options for importing models; see import/import.h. Chosen: 512 texels are more than a row of a 320×240 picture shows.
+// Options for importing models; see session/model_import.h.
 struct ModelOptions {
-  std::uint32_t texture_side_max = 512;
+  std::uint32_t texture_side_max = kTextureSideUsual;
   bool mip_maps = true;
   bool tells_halved = false;  // see ImportOptions
-  bool studio = true;  // for models that call for one
+  bool studio = true;         // for models that call for one
   ReadingChoice reading;
   bool animations = true;
 };

@@ -9,6 +9,7 @@
 
 #include "base/status.h"
 #include "scene/scene.h"
+#include "scene/texture_side.h"
 
 namespace pocketray {
 
@@ -19,11 +20,11 @@ enum class UpAxis { of_format, y, z };
 enum class GlassKind { automatic, thin, solid };
 
 struct ImportOptions {
-  std::uint32_t texture_side_max = 512;  // larger textures are halved until they fit
-  bool mip_maps = true;                  // store smaller levels of textures
-  bool tells_halved = false;             // the warning counts textures that were halved
-  bool strict = false;                   // refuse vertices that are not finite instead of leaving out their faces
-  UpAxis up = UpAxis::of_format;         // for formats that do not specify it: OBJ, PLY, STL, OFF
+  std::uint32_t texture_side_max = kTextureSideUsual;  // without larger levels of textures
+  bool mip_maps = true;                                // store smaller levels of textures
+  bool tells_halved = false;                           // the warning counts textures that were halved
+  bool strict = false;            // refuse vertices that are not finite instead of leaving out their faces
+  UpAxis up = UpAxis::of_format;  // for formats that do not specify it: OBJ, PLY, STL, OFF
   GlassKind glass = GlassKind::automatic;
   bool animations = true;  // false: the model at rest
   bool reduce = true;      // leave out what no picture shows

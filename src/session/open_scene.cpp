@@ -9,12 +9,14 @@
 #include "plan/resolve.h"
 #include "platform/memory.h"
 #include "session/animation_choice.h"
+#include "session/baked_file.h"
 #include "session/environment.h"
 #include "session/focus.h"
 #include "session/interrupt.h"
 #include "session/note.h"
 #include "session/quality_choice.h"
 #include "session/radiosity.h"
+#include "session/report.h"
 #include "session/room_light.h"
 
 namespace pocketray {
@@ -72,17 +74,23 @@ OpenScene::~OpenScene() {
   give_block_back(block);
 }
 
-Status open_scene(const CommonOptions& o, const OpenHooks& hooks, OpenScene* opened) {
-  CHECK(hooks.load && hooks.plan && hooks.output_bytes);
-  CHECK(opened->block == nullptr);  // opened once
+namespace {
+
+// Chosen: more texels than a row of a small screen has pixels. Levels beyond it make way for whatever speeds frames up;
+// smaller ones, only for what frames cannot do without.
+constexpr std::uint32_t kSpareTextureSide = 512;
+
+// Opens a scene without the levels of textures beyond a side.
+Status open_with_textures(const CommonOptions& o, const OpenHooks& hooks, std::uint32_t side_max, OpenScene* opened) {
   Settings settings;
   RETURN_IF_ERROR(read_settings(o, &settings));
+  settings.texture_side_max = side_max;
   opened->asked = settings;
   Isa isa;
   RETURN_IF_ERROR(parse_isa(o.isa, &isa));
   select_isa(isa);
   RETURN_IF_ERROR(check_memory(settings.memory_bytes, platform::free_memory()));
-  opened->block = take_block(settings.memory_bytes);
+  if (!opened->block) opened->block = take_block(settings.memory_bytes);
   if (!opened->block) return failure("cannot get %zu bytes of memory: lower --memory", settings.memory_bytes);
   Renderer* renderer = &opened->renderer;
   start_renderer(opened->block, settings.memory_bytes, settings, renderer);
@@ -98,7 +106,8 @@ Status open_scene(const CommonOptions& o, const OpenHooks& hooks, OpenScene* ope
   RETURN_IF_ERROR(set_environment_if_requested(o.environment, renderer, &opened->source, &storage));
   RETURN_IF_ERROR(check_outputs_of(o, opened->source.files));
   RETURN_IF_ERROR(solve_if_requested(o.scene, renderer, &opened->source, &storage));
-  if (settings.indirect == IndirectChoice::automatic)
+  const bool is_known = !hooks.is_shared || opened->source.has_all_levels;
+  if (settings.indirect == IndirectChoice::automatic && is_known)
     RETURN_IF_ERROR(light_room(o.scene, renderer, &opened->source, &storage));
   RETURN_IF_ERROR(set_quality(o, opened->source, renderer));
   opened->asked = settings = renderer->settings;
@@ -126,6 +135,45 @@ Status open_scene(const CommonOptions& o, const OpenHooks& hooks, OpenScene* ope
   return success();
 }
 
+// After planning: the longest side of textures with which to try again, or 0.
+std::uint32_t smaller_textures(const OpenScene& opened, const Status& planned) {
+  const Renderer& renderer = opened.renderer;
+  const MemoryPlan& plan = renderer.memory.plan;
+  const Array<const Texture> textures = renderer.scene.textures;
+  const std::uint32_t side_max = renderer.settings.texture_side_max;
+  if (plan.total_bytes == 0 || textures.empty()) return 0;  // not planned
+  if (planned.ok) {
+    const std::uint32_t smaller = next_smaller_side(textures, side_max);
+    const bool is_slow = renderer.accel.is_fallback || renderer.history.state.unplanned_because == kCoherenceTooLarge;
+    return is_slow && smaller >= kSpareTextureSide ? smaller : 0;
+  }
+  if (plan.total_bytes <= plan.limit_bytes) return 0;
+  const std::uint64_t missing = plan.total_bytes - plan.limit_bytes, kept = kept_texel_bytes(textures, side_max);
+  std::uint32_t side = next_smaller_side(textures, side_max);
+  while (side > 0 && kept - kept_texel_bytes(textures, side) < missing) side = next_smaller_side(textures, side);
+  return side;
+}
+
+}  // namespace
+
+Status open_scene(const CommonOptions& o, const OpenHooks& hooks, OpenScene* opened) {
+  CHECK(hooks.load && hooks.plan && hooks.output_bytes);
+  CHECK(opened->block == nullptr);  // opened once
+  opened->texture_side_asked = o.texture_side_max;
+  const Status status = open_with_textures(o, hooks, o.texture_side_max, opened);
+  const std::size_t bytes_wanted = opened->source.bytes_wanted;
+  Status latest = status;
+  for (;;) {
+    const std::uint32_t side_max = smaller_textures(*opened, latest);
+    if (side_max == 0) break;
+    opened->renderer = Renderer();
+    opened->source = SceneSource();
+    latest = open_with_textures(o, hooks, side_max, opened);
+  }
+  if (!latest.ok && !status.ok) opened->source.bytes_wanted = bytes_wanted;
+  return latest.ok || status.ok ? latest : status;
+}
+
 Status start_scene(OpenScene* opened, const CommonOptions& o) {
   CHECK(opened->block != nullptr && opened->renderer.workers == nullptr);
   Renderer* renderer = &opened->renderer;
@@ -140,8 +188,25 @@ Status start_scene(OpenScene* opened, const CommonOptions& o) {
   return change_exposure(factor, &renderer->view.exposure);
 }
 
+namespace {
+
+// "textures up to 512 texels: the block has no room for more; --memory 29M has"
+void print_texture_note(const OpenScene& opened) {
+  const SceneSource& source = opened.source;
+  const Settings& settings = opened.renderer.settings;
+  if (source.has_all_levels || settings.texture_side_max == opened.texture_side_asked) return;
+  const std::uint64_t wanted = opened.renderer.memory.plan.total_bytes + source.whole_bytes - source.baked_bytes;
+  std::string text =
+      "textures up to " + counted(settings.texture_side_max, "texel") + ": the block has no room for more";
+  if (wanted < kMemoryBytesMax) text += "; --memory " + std::to_string((wanted >> 20) + 1) + "M has";
+  print_note(text);
+}
+
+}  // namespace
+
 void print_notes(const OpenScene& opened, const char* aov) {
   if (!opened.source.warning.empty()) print_note(opened.source.warning);
+  print_texture_note(opened);
   std::uint32_t threads = worker_thread_count(opened.renderer.workers), asked = opened.renderer.settings.threads;
   if (!opened.renderer.image.empty() && threads < asked)
     std::fprintf(stderr, "pocketray: the system allows only %u of %u threads; continuing with those\n", threads, asked);

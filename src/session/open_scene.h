@@ -13,6 +13,7 @@ struct OpenScene {
   Renderer renderer;
   SceneSource source;
   Settings asked;  // by the command line, before a budget chooses
+  std::uint32_t texture_side_asked = kTextureSideMax;
   void* block = nullptr;
   OpenScene() = default;
   OpenScene(const OpenScene&) = delete;
@@ -23,6 +24,8 @@ struct OpenScene {
 // A command's additions to opening a scene.
 struct OpenHooks {
   std::function<OutputNeed(const Settings&)> output_bytes;  // as passed to plan_memory()
+  // With servers: they know the scene only as its source has it, or with the light of all its levels of textures.
+  bool is_shared = false;
   std::function<Status(const std::string& name, Renderer*, SceneSource*, SceneStorage*)> load = load_scene;
   std::function<Status(const SceneSource&, Renderer*)> loaded = {};  // between loading and planning
   std::function<Status(Renderer*, const SceneStorage&, const OutputNeed& output)> plan = plan_renderer;

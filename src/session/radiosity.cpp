@@ -30,6 +30,7 @@ struct Block {
 Status prepare(const Scene& scene, Renderer* renderer, Block* block) {
   Settings settings;
   settings.width = settings.height = 1, settings.threads = 1;
+  settings.texture_side_max = kSolvedTextureSide;
   settings.indirect = IndirectChoice::none;
   // Chosen: the default of `render`; doubled until the scene fits.
   for (std::size_t bytes = std::size_t(64) << 20;; bytes *= 2) {

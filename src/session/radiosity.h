@@ -15,6 +15,9 @@ struct SolvedRadiosity {
 // Chosen: fewer leave no shadows, more take gigabytes for form factors.
 constexpr std::uint32_t kPatchCountMin = 20, kPatchCountMax = 5000;
 
+// Longest side of the textures from which it is solved: a device that leaves larger levels out gets the same light.
+constexpr std::uint32_t kSolvedTextureSide = 256;
+
 struct RadiosityWork {
   std::uint32_t threads = 1;
   std::uint32_t patch_count = 0;  // roughly; 0: the default

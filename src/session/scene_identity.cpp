@@ -9,7 +9,7 @@ Status identify_scene(const SceneSource& source, Renderer* renderer, ContentHash
   CHECK(renderer != nullptr && hash != nullptr);
   CHECK((source.baked != nullptr) == (source.baked_bytes > 0));
   if (source.baked) {
-    *hash = content_hash(source.baked, source.baked_bytes);
+    *hash = source.has_all_levels ? content_hash(source.baked, source.baked_bytes) : source.whole;
     return success();
   }
   std::size_t byte_count = baked_size(renderer->scene), mark = arena_mark(renderer->memory.scene);

@@ -94,6 +94,8 @@ Status read_others(const CommonOptions& o, Settings* settings) {
   if (o.coherence_table < 1 || o.coherence_table > kCoherenceTableSideMax)
     return failure("--coherence-table is %u: it must lie in 1 … %u", o.coherence_table, kCoherenceTableSideMax);
   settings->coherence_table = o.coherence_table;
+  RETURN_IF_ERROR(check_limit(Quantity::texture_side, double(o.texture_side_max), "--texture-max"));
+  settings->texture_side_max = o.texture_side_max;
   return parse_coherence(o.coherence, &settings->coherence);
 }
 
@@ -103,7 +105,7 @@ Status read_settings(const CommonOptions& o, Settings* settings) {
   RETURN_IF_ERROR(picture_size(o, &settings->width, &settings->height));
   const platform::Device* device;
   RETURN_IF_ERROR(find_device(o, &device));
-  if (device) settings->memory_bytes = device->memory_bytes;
+  settings->memory_bytes = device ? device->memory_bytes : kMemoryUsual;
   settings->memory_bytes = std::min(settings->memory_bytes, memory_to_take(platform::free_memory()));
   if (!o.memory.empty()) RETURN_IF_ERROR(parse_bytes(o.memory, &settings->memory_bytes));
   RETURN_IF_ERROR(parse_effects(o.effects.c_str(), settings));

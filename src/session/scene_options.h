@@ -32,6 +32,13 @@ struct SettingOptions {
 // For --environment: removes the scene's environment.
 constexpr const char* kNoEnvironment = "none";
 
+// Size of the memory block unless it is given. Desktops, which read models, have room for their textures.
+#ifdef POCKETRAY_HAVE_IMPORT
+constexpr std::size_t kMemoryUsual = std::size_t(256) << 20;
+#else
+constexpr std::size_t kMemoryUsual = std::size_t(64) << 20;
+#endif
+
 struct CommonOptions {
   std::string scene;
   std::string size, memory, effects = "auto", camera, exposure, tone = "clip", json, device, emulate, isa,
@@ -42,6 +49,7 @@ struct CommonOptions {
   std::string animation;                       // animation_choice.h; empty: the default
   ReadingChoice reading;
   std::uint32_t threads = 0, camera_index = 0;
+  std::uint32_t texture_side_max = kTextureSideMax;
   // Files that the command writes besides --json. None may replace a file that the scene is read from.
   std::vector<NamedFile> outputs;
   std::string output_folder;

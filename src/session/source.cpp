@@ -10,6 +10,8 @@
 #include "platform/memory.h"
 #include "scene/baked.h"
 #include "scene/builtin/builtin.h"
+#include "scene/texture_side.h"
+#include "session/baked_file.h"
 #include "session/environment.h"
 #ifdef POCKETRAY_HAVE_IMPORT
 #include "session/environment_import.h"
@@ -29,20 +31,27 @@ Status load_builtin(const BuiltinScene& builtin, Renderer* renderer, SceneSource
   return success();
 }
 
-Status load_baked(const std::string& name, Renderer* renderer, SceneSource* source, SceneStorage* storage) {
-  auto take = [renderer](std::uint64_t byte_count) {
-    return static_cast<std::uint8_t*>(arena_try_allocate(&renderer->memory.scene, byte_count));
-  };
-  std::uint8_t* bytes = nullptr;
-  std::uint64_t byte_count = 0;
-  Status status = read_baked(name, take, &bytes, &byte_count);
-  if (byte_count > 0 && !bytes) return scene_too_large(name, byte_count, renderer->settings.memory_bytes, source);
-  if (!status.ok) return failure("%.300s %s", name.c_str(), status.message);
-  source->baked = bytes;
-  source->baked_bytes = static_cast<std::size_t>(byte_count);
+// Opens the file in the scene arena.
+Status adopt(const std::string& name, const FittedFile& file, Renderer* renderer, SceneSource* source,
+             SceneStorage* storage) {
+  CHECK(file.bytes != nullptr);
+  source->baked = file.bytes, source->baked_bytes = file.byte_count;
+  source->has_all_levels = file.is_whole, source->whole = file.whole;
+  renderer->settings.texture_side_max = file.texture_side_max;
   storage->arena_bytes = renderer->memory.scene.used;
-  status = baked_open(bytes, source->baked_bytes, &renderer->scene);
+  const Status status = baked_open(file.bytes, file.byte_count, &renderer->scene);
   return status.ok ? status : failure("%s: %.400s", name.c_str(), status.message);
+}
+
+Status load_baked(const std::string& name, Renderer* renderer, SceneSource* source, SceneStorage* storage) {
+  FittedFile file;
+  const Status status = with_file(name, [&](const ByteSource& bytes) {
+    source->whole_bytes = bytes.byte_count;
+    return read_fitted(bytes, renderer->settings.texture_side_max, &renderer->memory.scene, &file);
+  });
+  if (!status.ok) return failure("%.300s %s", name.c_str(), status.message);
+  if (!file.bytes) return scene_too_large(name, source->whole_bytes, renderer->settings.memory_bytes, source);
+  return adopt(name, file, renderer, source, storage);
 }
 
 #ifdef POCKETRAY_HAVE_IMPORT
@@ -59,16 +68,22 @@ Status load_imported(const std::string& name, Renderer* renderer, SceneSource* s
   source->parts = imported.parts;
   source->has_fill = imported.has_fill;
   source->files = imported.files;
-  // Copies from the heap into the block, in the form that a device would map.
-  std::size_t size = baked_size(imported.scene);
-  auto* bytes = static_cast<std::uint8_t*>(arena_try_allocate(&renderer->memory.scene, size));
-  if (!bytes) return scene_too_large(name, size, renderer->settings.memory_bytes, source);
-  baked_write(imported.scene, bytes);
-  source->baked = bytes;
-  source->baked_bytes = size;
-  storage->arena_bytes = renderer->memory.scene.used;
-  Status status = baked_open(bytes, size, &renderer->scene);
-  return status.ok ? status : failure("%s: %.400s", name.c_str(), status.message);
+  // Copies from the heap into the block, in the form that a device would read.
+  const std::size_t size = baked_size(imported.scene);
+  source->whole_bytes = size;
+  const std::uint32_t side_max = renderer->settings.texture_side_max;
+  FittedFile file;
+  file.texture_side_max = side_max;
+  if (size <= arena_free(renderer->memory.scene) && !any_levels_beyond(imported.scene.textures, side_max)) {
+    file.bytes = static_cast<std::uint8_t*>(arena_allocate(&renderer->memory.scene, size)), file.byte_count = size;
+    baked_write(imported.scene, file.bytes);
+  } else {
+    std::vector<std::uint8_t> bytes(size);
+    baked_write(imported.scene, bytes.data());
+    RETURN_IF_ERROR(read_fitted(bytes_in_memory(bytes.data(), size), side_max, &renderer->memory.scene, &file));
+  }
+  if (!file.bytes) return scene_too_large(name, size, renderer->settings.memory_bytes, source);
+  return adopt(name, file, renderer, source, storage);
 }
 #endif
 

@@ -23,6 +23,9 @@ struct SceneSource {
   ReadingChoice reading;                // set before loading
   const std::uint8_t* baked = nullptr;  // the .pray file or baked model that the scene views; null: built-in
   std::size_t baked_bytes = 0;
+  bool has_all_levels = true;               // false: larger levels of textures are left out of these bytes,
+  ContentHash whole;                        // and with them they have this hash,
+  std::uint64_t whole_bytes = 0;            // and size
   ContentHash environment;                  // of the scene as --environment made it; zero: its own
   std::string warning;                      // one line; empty: none
   std::vector<std::string> material_names;  // of the scene's materials, as far as the file has them

@@ -99,13 +99,14 @@ void setting(Io& io, const SettingRow& row, Settings* settings) {
 }
 
 // Settings that change pixels.
-constexpr std::uint32_t kSettingsBytes = 2 * 2 + setting_wire_bytes() + 2 * sizeof(EffectMask) + 1;
+constexpr std::uint32_t kSettingsBytes = 2 * 2 + setting_wire_bytes() + 2 * sizeof(EffectMask) + 1 + 2;
 template <class Io>
 void fields(Io& io, Settings* settings) {
   count(io, &settings->width, Quantity::width, 2), count(io, &settings->height, Quantity::height, 2);
   for (const SettingRow& row : kSettingList) setting(io, row, settings);
   effects(io, &settings->forced_on), effects(io, &settings->forced_off);
   choice(io, &settings->tone, Tone::film);
+  count(io, &settings->texture_side_max, Quantity::texture_side, 2);
 }
 
 // The rows and their order.

@@ -19,7 +19,7 @@ constexpr int settings_on_wire() {
   return count;
 }
 // Each setting added to requests adds 1 to the version; for any other change of the format, raise the first number.
-constexpr std::uint16_t kWireVersion = 23 + (settings_on_wire() - 6);
+constexpr std::uint16_t kWireVersion = 24 + (settings_on_wire() - 6);
 constexpr std::uint32_t kHeaderBytes = 8;
 constexpr std::uint32_t kPieceBytesMax = 1u << 16;  // scene bytes per message
 constexpr std::uint32_t kPingBytesMax = 1u << 16;   // of a pong's payload

@@ -49,10 +49,11 @@ std::string baked_knobs(const SweepPlan& plan) {
 // built-in scenes.
 TEST_CASE("bake_knobs_fit_what_a_scene_holds") {
   const BakeableScene small = {true, 128, false}, usual = {true, 512, false}, large = {true, 1024, false},
-                      bare = {true, 0, true}, built_in = {false, 64, true};
-  CHECK(fitting("texture-max", small) == "64 texels;512 texels;");
-  CHECK(fitting("texture-max", usual) == "64 texels;128 texels;256 texels;512 texels;");
-  CHECK(fitting("texture-max", large) == "64 texels;128 texels;256 texels;512 texels;1024 texels;");
+                      largest = {true, 2048, false}, bare = {true, 0, true}, built_in = {false, 64, true};
+  CHECK(fitting("texture-max", small) == "64 texels;2048 texels;");
+  CHECK(fitting("texture-max", usual) == "64 texels;128 texels;256 texels;2048 texels;");
+  CHECK(fitting("texture-max", large) == "64 texels;128 texels;256 texels;512 texels;2048 texels;");
+  CHECK(fitting("texture-max", largest) == "64 texels;128 texels;256 texels;512 texels;1024 texels;2048 texels;");
   CHECK(fitting("texture-max", bare) == "");
   CHECK(fitting("texture-max", built_in) == "");
   CHECK(fitting("mip-maps", large) == "none;stored;");

@@ -43,6 +43,40 @@ check anisotropic_is_seen bash -c '! cmp -s anisotropic.ppm trilinear.ppm && ! c
 check bilinear_is_without_levels cmp -s bilinear.ppm plain.ppm
 check levels_are_seen bash -c '! cmp -s scene.ppm plain.ppm'
 
+# Goal: a device without room for all levels leaves out the largest, says so, and shows what a file baked without them
+# shows; so does one that is told to.
+expect render_limited 0 'ns per pixel' render levels.pray "${view[@]}" --texture-max 64 -o limited.ppm
+expect render_coarse 0 'ns per pixel' render coarse.pray "${view[@]}" -o coarse.ppm
+check limited_is_as_baked cmp -s limited.ppm coarse.ppm
+expect render_limited_model 0 'ns per pixel' render floor.obj "${view[@]}" --texture-max 64 -o model.ppm
+check limited_model_is_as_baked cmp -s model.ppm coarse.ppm
+"${run[@]}" render levels.pray "${view[@]}" --texture-max 4 -o blurred.ppm >/dev/null
+check limit_is_seen bash -c '! cmp -s blurred.ppm scene.ppm'
+expect render_in_little_memory 0 '^pocketray: textures up to [0-9]+ texels: the block has no room for more; --memory 1M has' \
+  render levels.pray "${view[@]}" --memory 200K -o little.ppm
+expect plan_in_little_memory 0 'textures up to [0-9]+ texels' plan levels.pray --size 64x48 --threads 2 --memory 200K
+side=$("${run[@]}" render levels.pray "${view[@]}" --memory 200K -o little.ppm 2>&1 | sed -n 's/.*textures up to \([0-9]*\) texels.*/\1/p')
+expect render_as_in_little_memory 0 'ns per pixel' render levels.pray "${view[@]}" --texture-max "${side:-0}" -o asked.ppm
+check little_memory_shows_smaller_textures cmp -s little.ppm asked.ppm
+expect too_little_memory 1 'the scene needs .* MiB of memory but' render levels.pray "${view[@]}" --memory 64K -o refused.ppm
+expect textures_of_no_texels 1 '--texture-max is 0' render levels.pray --texture-max 0 -o refused.ppm
+if [ ${#run[@]} = 1 ] && "${run[@]}" --help | grep -q '^ *serve '; then
+  mkdir scenes && cp levels.pray floor.obj floor.mtl floor.tga scenes/
+  "${run[@]}" serve --listen 127.0.0.1:0 --scenes scenes --threads 2 >serve.out 2>serve.err &
+  server=$!
+  wait_for $server grep -q '^listening' serve.out
+  address=$(sed -n 's/^listening on \([0-9.:]*\): .*/\1/p' serve.out)
+  for scene in levels.pray floor.obj; do
+    share=(render $scene "${view[@]}" --texture-max 64 --server "$address" --frames 0:2 -o "shared_$scene.ppm")
+    expect "share_$scene" 0 'render servers: the device rendered' "${share[@]}"
+    check "share_${scene}_is_known" test "$("${run[@]}" "${share[@]}" 2>&1 | grep -cE 'wrong pixels|does not have|unreachable')" = 0
+    for frame in 0 1 2; do
+      check "shared_${scene}_${frame}_is_as_alone" cmp -s coarse.ppm "shared_$scene-000$frame.ppm"
+    done
+  done
+  kill -INT $server && wait $server
+fi
+
 # Goal: compressed textures are smaller, look alike, and bake says what they cost.
 expect bake_compressed 0 '128×128: colour, 4 bits, PSNR [34][0-9]' bake floor.obj -o blocks.pray --textures compressed
 check blocks_take_an_eighth [ $(($(size plain.pray) - $(size blocks.pray))) -ge 50000 ]
@@ -54,8 +88,8 @@ fi
 # Goal: Khronos' DamagedHelmet fits a small device: textures of at most 1.5 MiB that look like the exact ones.
 helmet=${POCKETRAY_SHARED:-}/scenes/gltf/DamagedHelmet.glb
 if [ -f "$helmet" ] && [ ${#run[@]} = 1 ] && "${run[@]}" compare --help >/dev/null 2>&1; then
-  "${run[@]}" bake "$helmet" -o exact.pray >/dev/null
-  "${run[@]}" bake "$helmet" -o small.pray --textures compressed --json small.json >/dev/null
+  "${run[@]}" bake "$helmet" -o exact.pray --texture-max 512 >/dev/null
+  "${run[@]}" bake "$helmet" -o small.pray --texture-max 512 --textures compressed --json small.json >/dev/null
   bytes=$(sed -n 's/.*"texture_bytes": \([0-9]*\).*/\1/p' small.json)
   check helmet_takes_at_most [ "${bytes:-9999999}" -le $((3 << 19)) ]
   for kind in exact small; do "${run[@]}" render $kind.pray --threads 2 -o helmet_$kind.ppm >/dev/null 2>&1; done

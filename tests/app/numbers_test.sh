@@ -36,7 +36,7 @@ sweep() {
   done
 }
 
-scene="--samples --depth --area-lights --cut-off --threads --camera-index --exposure --memory --size"
+scene="--samples --depth --area-lights --cut-off --texture-max --threads --camera-index --exposure --memory --size"
 small=(--size 8x6 --threads 1 --memory 4M)
 sweep "${scene/ --size/} --time --orbit --turntable --rotate --frames --budget-ms" render cube "${small[@]}" -o a.ppm
 sweep "--size" render cube --memory 4M -o a.ppm

@@ -6,6 +6,9 @@
 #include "brdf/brdf_list.h"
 #include "import/gltf_writer.h"
 #include "import/import_testing.h"
+#include "scene/baked.h"
+#include "scene/texture_levels.h"
+#include "scene/texture_side.h"
 
 using namespace pocketray;
 
@@ -337,8 +340,9 @@ TEST_CASE("gltf_textures_in_unknown_formats_are_left_out") {
   CHECK(with.scene.textures.count > 0);
 }
 
-// Goal: textures are halved until they fit. Method: the sample helmet at a side of at most 64.
-TEST_CASE("gltf_large_textures_are_halved_until_they_fit") {
+// Goal: a model read with small textures is what a device makes of it by leaving out levels. Method: the sample helmet
+// at a side of at most 64 and as usual; all arrays but the textures are equal, and so are the levels.
+TEST_CASE("gltf_textures_lack_larger_levels") {
   std::string path = shared_scene("gltf/DamagedHelmet.glb");
   if (!have(path)) return;
   ImportOptions options;
@@ -346,6 +350,17 @@ TEST_CASE("gltf_large_textures_are_halved_until_they_fit") {
   ImportedScene imported = load(path, options);
   REQUIRE(imported.scene.textures.count == 5);
   for (const Texture& t : imported.scene.textures) CHECK((t.width == 64 && t.height == 64));
+  const ImportedScene usual = load(path);
+  for (std::uint32_t i = 0; i < 5; ++i) {
+    CHECK(usual.scene.textures[i].width == kTextureSideUsual);
+    const Texture &t = imported.scene.textures[i], rest = without_levels_beyond(usual.scene.textures[i], 64);
+    REQUIRE(t.level_count == rest.level_count);
+    for (std::uint32_t texel = 0; texel < level_texels(64, 64, t.level_count); ++texel)
+      REQUIRE(imported.scene.texels[t.texel_begin + texel] == usual.scene.texels[rest.texel_begin + texel]);
+  }
+  Scene one = imported.scene, other = usual.scene;
+  one.textures = other.textures = {}, one.texels = other.texels = {};
+  CHECK(scene_hash(one) == scene_hash(other));
 }
 
 // Goal: the material samples show what they are made to show.

@@ -66,6 +66,8 @@ bool option_accepts(Quantity quantity, double x) {
       return settings_accept([&](CommonOptions* o) { o->size = "1x" + text_of(x); });
     case Quantity::camera_index:
       return settings_accept([&](CommonOptions* o) { o->camera_index = count; });
+    case Quantity::texture_side:
+      return settings_accept([&](CommonOptions* o) { o->texture_side_max = count; });
     case Quantity::coordinate:
       for (int place = 0; place < 9; ++place) accepted = accepted && camera_accepts(place, text_of(x));
       return accepted;
@@ -131,6 +133,8 @@ std::vector<Field> message_fields() {
     };
     fields.push_back({Quantity::width, type, [=](Message* m, double x) { take(&settings(m)->width, x); }, 2});
     fields.push_back({Quantity::height, type, [=](Message* m, double x) { take(&settings(m)->height, x); }, 2});
+    fields.push_back(
+        {Quantity::texture_side, type, [=](Message* m, double x) { take(&settings(m)->texture_side_max, x); }, 2});
     for (const SettingRow& row : kSettingList)
       if (row.field.kind != SettingKind::choice)
         fields.push_back({row.field.quantity, type, [=, &row](Message* m, double x) { row.field.set(settings(m), x); },
@@ -226,7 +230,8 @@ bool receiver_accepts(const Field& field, double x) {
 bool is_count(Quantity q) {
   return q == Quantity::width || q == Quantity::height || q == Quantity::samples || q == Quantity::depth ||
          q == Quantity::edge_samples || q == Quantity::area_light_points || q == Quantity::virtual_lights ||
-         q == Quantity::environment_shadows || q == Quantity::camera_index || q == Quantity::price;
+         q == Quantity::environment_shadows || q == Quantity::texture_side || q == Quantity::camera_index ||
+         q == Quantity::price;
 }
 // Quantities stored in files.
 bool is_in_files(Quantity q) {

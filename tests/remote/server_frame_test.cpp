@@ -147,6 +147,7 @@ TEST_CASE("server_frames_follow_every_setting") {
     check(request, true);
   }
   check_and_back([](FrameRequest* r) { r->exposure = 0.2f; });
+  check_and_back([](FrameRequest* r) { r->settings.texture_side_max = 1; });
   request = plain;
   request.camera_index = 2, request.camera_stated = true, request.camera.eye = {0, 3, 5};
   check(request, true);

@@ -115,7 +115,7 @@ TEST_CASE("accuracy_bakes_models_otherwise") {
   const double usual = measured_as(sweep, "baseline", "").stored_bytes;
   CHECK(measured_as(sweep, "texture-max", "64 texels").stored_bytes == usual - 4 * 128 * 128);
   CHECK(measured_as(sweep, "texture-max", "1024 texels").missing == "no texture has more than 128 texels a side");
-  CHECK(measured_as(sweep, "texture-max", "512 texels").is_default);
+  CHECK(measured_as(sweep, "texture-max", "2048 texels").is_default);
   CHECK(measured_as(sweep, "mip-maps", "none").stored_bytes < usual - 4 * 128 * 128 / 4);
   CHECK(measured_as(sweep, "textures", "compressed").stored_bytes < usual / 3);
 }

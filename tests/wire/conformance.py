@@ -259,8 +259,8 @@ def test_malformed(server, scenes):
         check(device.closed(waits=data is cases[0]), "malformed bytes end the connection")
         device.socket.close()
     for data, code in ((good, MALFORMED), (b"GET / HTTP/1.1\r\n\r\n", MALFORMED), (hello(3), WRONG_VERSION),
-                       (message(HELLO, b"PRAY\41\0"), WRONG_VERSION), (hello(33, bytes(234)), WRONG_VERSION),
-                       (message(HELLO, b"PRAY\40\0" + bytes(251)), MALFORMED), (hello(32, b"x"), MALFORMED),
+                       (message(HELLO, b"PRAY\42\0"), WRONG_VERSION), (hello(34, bytes(234)), WRONG_VERSION),
+                       (message(HELLO, b"PRAY\41\0" + bytes(251)), MALFORMED), (hello(33, b"x"), MALFORMED),
                        (message(HELLO, b"pray" + bytes(18)), MALFORMED), (message(HELLO, hello()[8:28] + b"\xff\0"), MALFORMED)):
         device = Device(server.address, greets=False)
         check(device.error(data, data.hex()[:80]) == (code, 0), "first message %s" % data[:16])

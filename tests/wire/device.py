@@ -63,7 +63,7 @@ def message(kind, fields=b""):
     return head + struct.pack("<I", zlib.crc32(head + fields)) + fields
 
 
-def hello(version=32, more=b""):
+def hello(version=33, more=b""):
     return message(HELLO, b"PRAY" + struct.pack("<HHIQH", version, 8192, 1 << 21, 1 << 30, 256) + more)
 
 
@@ -76,7 +76,7 @@ def pack_camera(camera):
 
 
 DEFAULTS = dict(frame=1, time=0.0, animation=0, wanted=b"", stated=0, index=0, camera=CAMERA, width=48, height=36, samples=1, depth=8, points=4,
-                cut_off=0.5, filter=0, normals=0, indirect=0, reconstruction=2, virtual_lights=64, compensation=0, selective=0.0, resolution=0, light_tolerance=0.0625, environment_shadows=32, edge_samples=0, on=0, off=0, tone=0, exposure=0.0, dither=0, format=RGB888, first=0, end=None,
+                cut_off=0.5, filter=0, normals=0, indirect=0, reconstruction=2, virtual_lights=64, compensation=0, selective=0.0, resolution=0, light_tolerance=0.0625, environment_shadows=32, edge_samples=0, on=0, off=0, tone=0, texture_side=16384, exposure=0.0, dither=0, format=RGB888, first=0, end=None,
                 largest=16, coding=1, coarse=0, pitch=0, order=(), measure=0)
 
 
@@ -85,10 +85,10 @@ def request(scene, kind=FRAME_REQUEST, **changes):
     end = r["height"] if r["end"] is None else r["end"]
     pitch = struct.pack("<B", r["pitch"]) if kind == FRAME_REQUEST else b""
     rows = struct.pack("<B", r["coarse"]) + pitch + struct.pack("<HH", r["first"], end) + bytes(x for run in r["order"] for x in run)
-    settings = struct.pack("<HHBBHfBBBBHBfBfHBQQB", r["width"], r["height"], r["samples"], r["depth"], r["points"], r["cut_off"],
+    settings = struct.pack("<HHBBHfBBBBHBfBfHBQQBH", r["width"], r["height"], r["samples"], r["depth"], r["points"], r["cut_off"],
                            r["filter"], r["normals"], r["indirect"],
                            r["reconstruction"], r["virtual_lights"], r["compensation"], r["selective"], r["resolution"], r["light_tolerance"],
-                           r["environment_shadows"], r["edge_samples"], r["on"], r["off"], r["tone"])
+                           r["environment_shadows"], r["edge_samples"], r["on"], r["off"], r["tone"], r["texture_side"])
     view = struct.pack("<BH", r["stated"], r["index"]) + pack_camera(r["camera"])
     if kind == FRAME_CHANGE:
         return message(kind, struct.pack("<Id6f", r["frame"], r["time"], *r["camera"]["eye"], *r["camera"]["target"]) + rows)
@@ -111,7 +111,7 @@ class Device:
         if greets:
             self.send(hello())
             kind, fields = self.receive()
-            check(kind == HELLO and fields[:6] == b"PRAY\40\0", "the server says hello first, of version 32")
+            check(kind == HELLO and fields[:6] == b"PRAY\41\0", "the server says hello first, of version 33")
             self.side, self.message_bytes, self.scene_bytes, self.price = struct.unpack("<HIQH", fields[6:])
             check(self.price >= 256, "the hello's price")
 

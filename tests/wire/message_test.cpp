@@ -244,17 +244,17 @@ TEST_CASE("message_values_out_of_range_are_refused") {
       {MessageType::frame_request, 8 + 98, {5}},                           // reconstruction
       {MessageType::frame_request, 8 + 101, {2}},                          // compensation
       {MessageType::frame_request, 8 + 102, nan},                          // selective
-      {MessageType::frame_request, 8 + more + 114, {0, 0, 0x80, 0xBF}},    // exposure −1
+      {MessageType::frame_request, 8 + more + 116, {0, 0, 0x80, 0xBF}},    // exposure −1
       {MessageType::frame_request, 8 + more + 104, {1}},                   // an effect that is none, on
       {MessageType::frame_request, 8 + more + 112, {1}},                   // and off
       {MessageType::frame_request, 8 + more + 113, {kToneCount}},          // tone
-      {MessageType::frame_request, 8 + more + 118, {2}},                   // dither
-      {MessageType::frame_request, 8 + more + 119, {2}},                   // format
-      {MessageType::frame_request, 8 + more + 124, {0, 5, 0, 5, 0}},       // no rows
-      {MessageType::frame_request, 8 + more + 127, {0xFF, 0xFF}},          // rows beyond the picture
-      {MessageType::frame_request, 8 + more + 120, {0, 0}},                // chunk rows
-      {MessageType::frame_request, 8 + more + 122, {3}},                   // coding
-      {MessageType::frame_request, 8 + more + 123, {2}},                   // coarse first
+      {MessageType::frame_request, 8 + more + 120, {2}},                   // dither
+      {MessageType::frame_request, 8 + more + 121, {2}},                   // format
+      {MessageType::frame_request, 8 + more + 126, {0, 5, 0, 5, 0}},       // no rows
+      {MessageType::frame_request, 8 + more + 129, {0xFF, 0xFF}},          // rows beyond the picture
+      {MessageType::frame_request, 8 + more + 122, {0, 0}},                // chunk rows
+      {MessageType::frame_request, 8 + more + 124, {3}},                   // coding
+      {MessageType::frame_request, 8 + more + 125, {2}},                   // coarse first
       {MessageType::frame_change, 8 + 4, {0, 0, 0, 0, 0, 0, 0xF8, 0x7F}},  // seconds
       {MessageType::frame_change, 8 + 12, nan},                            // eye.x
       {MessageType::frame_change, 8 + 36, {2}},                            // coarse first
@@ -274,7 +274,7 @@ TEST_CASE("message_values_out_of_range_are_refused") {
       {MessageType::view_query, 8 + 80, {2}},                             // camera stated
       {MessageType::view_query, 8 + 83, nan},                             // eye.x
       {MessageType::view_query, 8 + 131, {0, 0}},                         // width
-      {MessageType::view_query, 8 + more + 162, {2}},                     // exposure measured
+      {MessageType::view_query, 8 + more + 164, {2}},                     // exposure measured
       {MessageType::view_query, 8 + 79, {'x'}},                           // an animation's name without end
       {MessageType::view_entry, 8 + 20, {0, 0, 0, 0, 0, 0, 0xF0, 0x7F}},  // origin
       {MessageType::view_entry, 8 + 44, infinite},                        // eye.x

@@ -26,8 +26,8 @@ std::vector<Knob> bake_knobs() {
   Knob &side = knobs[0], &mip_maps = knobs[1], &blocks = knobs[2], &radiosity = knobs[3];
   side.name = "texture-max", side.what = "longest side of textures, as `bake --texture-max` stores them";
   side.effect = "texture";
-  side.values = {64, 128, 256, 512, kTextureSideSwept};
-  side.labels = {"64 texels", "128 texels", "256 texels", "512 texels", "1024 texels"};
+  side.values = {64, 128, 256, 512, 1024, kTextureSideSwept};
+  side.labels = {"64 texels", "128 texels", "256 texels", "512 texels", "1024 texels", "2048 texels"};
   side.get = [](const Configuration& c) { return static_cast<double>(c.bake.texture_side_max); };
   side.set = [](Configuration* c, double v) { c->bake.texture_side_max = static_cast<std::uint32_t>(v); };
   side.bake_unfit = texture_max_unfit;

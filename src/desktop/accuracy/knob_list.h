@@ -10,6 +10,7 @@
 #include "effect/settings.h"
 #include "present/pack.h"
 #include "scene/builtin/builtin.h"
+#include "scene/texture_side.h"
 
 namespace pocketray {
 
@@ -26,7 +27,7 @@ int find_output_format(const std::string& name);
 
 // How `bake` stores a scene, where a sweep varies it.
 struct BakeChoices {
-  std::uint32_t texture_side_max = 512;
+  std::uint32_t texture_side_max = kTextureSideUsual;
   bool has_mip_maps = true, is_compressed = false;
   std::uint32_t patch_count = 0;  // of radiosity; 0: what the scene has
 };
@@ -72,7 +73,7 @@ const std::vector<Knob>& knob_list();
 // The choices of `bake`, at the end of the list.
 std::vector<Knob> bake_knobs();
 // Largest --texture-max of the sweep.
-constexpr std::uint32_t kTextureSideSwept = 1024;
+constexpr std::uint32_t kTextureSideSwept = 2048;
 inline bool is_bake_choice(const Knob& knob) { return knob.bake_unfit != nullptr; }
 // The scene as it was opened, which needs no bake.
 inline bool is_as_opened(const BakeChoices& c) {

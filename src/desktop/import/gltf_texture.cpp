@@ -28,7 +28,7 @@ Image load_image(GltfFile* file, int index, TexelKind kind) {
     bytes.assign(data, data + count);
   }
   Image decoded = decode_image(file->builder, bytes, name);
-  fit_image(file->builder, &decoded, kind);
+  fit_image(*file->builder, &decoded, kind);
   return decoded;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <cstring>
+#include <map>
 #include <new>
 
 #include "base/arena.h"
@@ -10,6 +11,7 @@
 #include "base/limits.h"
 #include "desktop/import/import_error.h"
 #include "desktop/import/webp.h"
+#include "scene/texture_side.h"
 
 // Largest block that the decoder may allocate, and whether it asked for more: a PNG may inflate to a thousand times its
 // bytes, whatever its size in pixels.
@@ -157,17 +159,24 @@ void shrink_image(Image* image, std::uint32_t side_max, TexelKind kind) {
   while (image->width > side_max || image->height > side_max) *image = halved(*image, kind);
 }
 
-void fit_image(SceneBuilder* builder, Image* image, TexelKind kind) {
-  const std::uint32_t side_max = builder->options.texture_side_max;
-  builder->halved_count += image->width > side_max || image->height > side_max;
-  shrink_image(image, side_max, kind);
+std::uint32_t image_side_max(const SceneBuilder& builder) {
+  return std::max(builder.options.texture_side_max, kTextureSideUsual);
+}
+
+void fit_image(const SceneBuilder& builder, Image* image, TexelKind kind) {
+  const std::uint32_t width = image->width;
+  shrink_image(image, image_side_max(builder), kind);
+  image->is_halved |= image->width < width;
 }
 
 TexelRun add_texels(SceneBuilder* builder, Image image, TexelKind kind, bool has_levels) {
   SceneArrays& out = *builder->out;
-  fit_image(builder, &image, kind);
-  const std::uint32_t level_count =
-      builder->options.mip_maps && has_levels ? level_count_max(image.width, image.height) : 1;
+  const std::uint32_t side_max = builder->options.texture_side_max;
+  fit_image(*builder, &image, kind);
+  builder->halved_count += image.is_halved || image.width > side_max || image.height > side_max;
+  const bool makes_levels = builder->options.mip_maps && has_levels;
+  if (!makes_levels) shrink_image(&image, side_max, kind);
+  const std::uint32_t level_count = makes_levels ? level_count_max(image.width, image.height) : 1;
   const std::uint64_t begin = out.texels.size(), count = level_texels(image.width, image.height, level_count);
   charge_bytes(builder, count * 4, "the textures");
   out.texels.insert(out.texels.end(), image.texels.begin(), image.texels.end());
@@ -190,6 +199,21 @@ std::uint32_t add_texture(SceneBuilder* builder, const TexelRun& texels, Wrap wr
   texture.level_count = static_cast<std::uint8_t>(texels.level_count);
   out.textures.push_back(texture);
   return static_cast<std::uint32_t>(out.textures.size() - 1);
+}
+
+void leave_out_levels(std::uint32_t side_max, SceneArrays* arrays) {
+  if (!any_levels_beyond({arrays->textures.data(), static_cast<std::uint32_t>(arrays->textures.size())}, side_max))
+    return;
+  std::map<std::uint32_t, std::uint32_t> moved;  // first texels, which textures may share
+  std::vector<std::uint32_t> texels;
+  for (Texture& t : arrays->textures) {
+    t = without_levels_beyond(t, side_max);
+    const auto place = moved.emplace(t.texel_begin, static_cast<std::uint32_t>(texels.size()));
+    const std::uint32_t* from = arrays->texels.data() + t.texel_begin;
+    if (place.second) texels.insert(texels.end(), from, from + level_texels(t.width, t.height, t.level_count));
+    t.texel_begin = place.first->second;
+  }
+  arrays->texels.swap(texels);
 }
 
 float channel_mean(const Image& image, int channel) {

@@ -98,7 +98,7 @@ bool put_mask(const Image& mask, const MtlMap& mask_map, bool has_color, Image* 
                               (times[1] = repetitions(map->scale[1], mask_map.scale[1]));
     if (color_repeats) outer = mask_map;
     if (color_repeats || mask_repeats) {
-      const std::uint32_t side_max = std::max(builder->options.texture_side_max, 1u);
+      const std::uint32_t side_max = image_side_max(*builder);
       const Image& repeated = color_repeats ? color : mask;
       made.width = std::min(std::max(made.width, repeated.width * times[0]), side_max);
       made.height = std::min(std::max(made.height, repeated.height * times[1]), side_max);

@@ -43,7 +43,7 @@ bool load(SceneBuilder* builder, const std::string& scene_path, const MtlMateria
     *image = decode_image(
         builder, read_named({source.path, scene_path}, map.name, builder->options.byte_count_max, builder, &path),
         map.name);
-    fit_image(builder, image);
+    fit_image(*builder, image);
     return true;
   } catch (const ImportError& error) {
     note_remark(builder, std::string("a texture is missing: ") + error.what());

@@ -7,6 +7,7 @@
 #include "base/limits.h"
 #include "desktop/import/broken_faces.h"
 #include "desktop/import/glass.h"
+#include "desktop/import/image.h"
 #include "desktop/import/import_error.h"
 #include "desktop/import/origin.h"
 #include "desktop/import/reduce.h"
@@ -331,10 +332,9 @@ void finish_scene(SceneBuilder* builder, const std::string& name, ImportedScene*
   Status status = validate_scene(scene);
   if (!status.ok) fail_import("%s", status.message);
   pose_at_start(scene, *builder);
-  if (builder->options.reduce) {
-    reduce(&out);
-    scene = view_of(out);
-  }
+  if (builder->options.reduce) reduce(&out);
+  leave_out_levels(builder->options.texture_side_max, &out);
+  scene = view_of(out);
   result->storage = builder->out;
   result->warning = warning_line(*builder);
   result->parts = named_parts(*builder);

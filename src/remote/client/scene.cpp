@@ -240,6 +240,7 @@ Status open_scene_or_leave_it(Servers* servers, const CommonOptions& common, con
         "--server renders the scene's own background and lights: drop --server, --background, --environment and "
         "--light");
   OpenHooks hooks;
+  hooks.is_shared = true;
   hooks.output_bytes = [&](const Settings& settings) {
     OutputNeed need(output_bytes(settings) + servers->backend->need(*servers, settings));
     need.tls_bytes = arena_need(client_tls_need(*s));

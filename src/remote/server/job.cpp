@@ -57,8 +57,8 @@ Status make_codec(Session* session) {
 }
 
 bool same_pixels(const Settings& a, const Settings& b) {
-  return a.width == b.width && a.height == b.height && same_quality(a, b) && a.forced_on == b.forced_on &&
-         a.forced_off == b.forced_off;
+  return a.width == b.width && a.height == b.height && a.texture_side_max == b.texture_side_max && same_quality(a, b) &&
+         a.forced_on == b.forced_on && a.forced_off == b.forced_off;
 }
 
 bool is_built_for(const Session& session) {
@@ -124,7 +124,9 @@ Status build(Session* session) {
   Renderer* renderer = &session->renderer;
   std::size_t bytes = arena_need(renderer->memory.scene.used);
   for (std::size_t arena : renderer->memory.plan.arena_bytes) bytes += arena;
-  const std::size_t end = static_cast<std::size_t>(renderer->memory.scene.base - session->block.base) + bytes;
+  const std::size_t begin = static_cast<std::size_t>(renderer->memory.scene.base - session->block.base);
+  const std::size_t end = begin + bytes;
+  session->touched_bytes = std::max(session->touched_bytes, begin + renderer->memory.scene.used);  // holds a table
   if (!touch(session, std::min(end, session->block.capacity))) return success();
   RETURN_IF_ERROR(build_renderer_unexposed(renderer));
   session->own_exposure = wants_exposure(*renderer) ? 0 : renderer->view.exposure;
