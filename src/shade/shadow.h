@@ -154,6 +154,13 @@ inline Ray shadow_ray(const FrameData& frame, const Surface& s, const LightSampl
   return {below ? curved_origin(frame, s) : safe_origin(s, 1), sample.to_light, sample.t_max};
 }
 
+constexpr EffectMask kClearEffects = bit(Effect::refraction) | bit(Effect::alpha_blend);
+// True if light may pass surfaces.
+template <EffectMask mask>
+inline bool passes_clear_surfaces(const FrameData& frame) {
+  return (mask & kClearEffects) != 0 && (plan_of<mask>(frame) & kClearEffects) != 0;
+}
+
 // shadow() by tracing: the tile knows no result or, with `passes`, only that nothing opaque is in the way.
 template <EffectMask mask>
 [[gnu::noinline]] Vec3 traced_shadow(Tracer* tracer, const Surface& s, const LightRun& run, std::uint32_t light,
@@ -166,9 +173,8 @@ template <EffectMask mask>
     blocked = is_point_blocked(tracer, s, light, at_first_hit);
     passes = true;
   }
-  constexpr bool kClear = has(mask, Effect::refraction) || has(mask, Effect::alpha_blend);
   if (blocked) return {0, 0, 0};
-  if (passes && !kClear) return {1, 1, 1};
+  if (passes && !passes_clear_surfaces<mask>(frame)) return {1, 1, 1};
   LightSample sample;
   if (!known) run.sample(tracer->light_points[light], s.point, &sample), known = &sample;
   const Ray ray = shadow_ray(frame, s, *known);
@@ -180,9 +186,8 @@ template <EffectMask mask>
     blocked = rays.occluded(frame.geometry.accel, ray, filtered ? &opaque : nullptr, &tracer->stats);
   }
   if (blocked) return {0, 0, 0};
-  if constexpr (kClear) {
-    constexpr EffectMask clear = bit(Effect::refraction) | bit(Effect::alpha_blend);
-    if (plan_of<mask>(frame) & clear) return clear_transmittance<mask>(tracer, ray, context, at_first_hit);
+  if constexpr ((mask & kClearEffects) != 0) {
+    if (passes_clear_surfaces<mask>(frame)) return clear_transmittance<mask>(tracer, ray, context, at_first_hit);
   }
   return {1, 1, 1};
 }
@@ -196,8 +201,8 @@ template <EffectMask mask>
   ++tracer->rays[static_cast<int>(RayKind::shadow)];
   bool blocked;
   const bool known = at_first_hit && is_known(*tracer, light, &blocked);
-  constexpr bool kClear = has(mask, Effect::refraction) || has(mask, Effect::alpha_blend);
-  if (known && (blocked || !kClear)) return blocked ? Vec3{0, 0, 0} : Vec3{1, 1, 1};
+  if (known && (blocked || !passes_clear_surfaces<mask & kPassageEffects>(*tracer->frame)))
+    return blocked ? Vec3{0, 0, 0} : Vec3{1, 1, 1};
   return traced_shadow<mask & kPassageEffects>(tracer, s, run, light, sample, at_first_hit, known);
 }
 

@@ -68,8 +68,8 @@ class SourceSearch {
   std::uint32_t unbounded_ = 0;
 };
 
-// Traces the shadow rays of the tile's first hits to a light that several of its pixels have selected, if they are not
-// yet traced: the others select mostly the same lights, and rays are cheaper together.
+// Counts a light that the pixel being shaded selects. Once half of its tile's pixels so far have selected it, traces
+// the shadow rays of all others: they will mostly select it, too, and rays are cheaper together.
 void trace_selected(Tracer* tracer, const LightRun& run, std::uint32_t light);
 
 // Fills in the surfaces of a tile's first hits; no shadow ray is traced before its light is selected.

@@ -9,7 +9,6 @@ namespace pocketray {
 
 constexpr std::uint32_t kTileLightMax = 256;  // further lights are tested ray by ray
 constexpr std::uint32_t kTilePolygonMax = 4;  // polygons of further lamps are viewed again
-constexpr std::uint8_t kTogetherMin = 2;      // pixels that select a light before the rays of all are traced
 constexpr std::uint32_t kTileSampleMax = 8;   // further samples are computed again; these take 12 KiB
 
 // Unblocked light arriving at a pixel's first hit; see LightSample.
@@ -65,9 +64,9 @@ struct TileShadows {
   TileMask lit[kTileLightMax], traced[kTileLightMax], blocked[kTileLightMax];
   TileMask decided[kTileLightMax];        // replaces `traced` for points in groups; not set without groups
   TilePolygon polygons[kTilePolygonMax];  // by index in LightRun::polygons; not set without them
-  // Set with Effect::source_selection, as are `traced` and `blocked` of lights selected by several pixels.
-  TileReceivers receivers;
-  std::uint8_t selected[kTileLightMax];  // by so many pixels, up to kTogetherMin
+  // Set with Effect::source_selection, as are `traced` and `blocked` of lights that most pixels select.
+  TileReceivers receivers;               // from the pixel being shaded on
+  std::uint8_t selected[kTileLightMax];  // by so many pixels; or its rays are traced
 };
 
 // Fills `shadows` for the rays of a packet and their first hits.
