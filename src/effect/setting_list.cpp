@@ -17,6 +17,7 @@ const SettingRow* find_setting(const char* name) {
 
 bool within_setting(const SettingRow& row, double value) {
   const SettingField& field = row.field;
+  CHECK(field.kind != SettingKind::choice || field.names != nullptr);
   if (field.kind == SettingKind::choice) return value >= 0 && value < field.name_count && value == std::floor(value);
   return within(field.quantity, value) && (field.kind == SettingKind::real || value == std::floor(value));
 }
