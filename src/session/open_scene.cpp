@@ -135,6 +135,11 @@ Status open_with_textures(const CommonOptions& o, const OpenHooks& hooks, std::u
   return success();
 }
 
+// How many parts of a renderer that was planned are slower for want of memory: accelerator, coherence.
+int slow_parts(const Renderer& renderer) {
+  return int(renderer.accel.is_fallback) + int(renderer.history.state.unplanned_because == kCoherenceTooLarge);
+}
+
 // After planning: the longest side of textures with which to try again, or 0.
 std::uint32_t smaller_textures(const OpenScene& opened, const Status& planned) {
   const Renderer& renderer = opened.renderer;
@@ -144,8 +149,7 @@ std::uint32_t smaller_textures(const OpenScene& opened, const Status& planned) {
   if (plan.total_bytes == 0 || textures.empty()) return 0;  // not planned
   if (planned.ok) {
     const std::uint32_t smaller = next_smaller_side(textures, side_max);
-    const bool is_slow = renderer.accel.is_fallback || renderer.history.state.unplanned_because == kCoherenceTooLarge;
-    return is_slow && smaller >= kSpareTextureSide ? smaller : 0;
+    return slow_parts(renderer) > 0 && smaller >= kSpareTextureSide ? smaller : 0;
   }
   if (plan.total_bytes <= plan.limit_bytes) return 0;
   const std::uint64_t missing = plan.total_bytes - plan.limit_bytes, kept = kept_texel_bytes(textures, side_max);
@@ -160,18 +164,27 @@ Status open_scene(const CommonOptions& o, const OpenHooks& hooks, OpenScene* ope
   CHECK(hooks.load && hooks.plan && hooks.output_bytes);
   CHECK(opened->block == nullptr);  // opened once
   opened->texture_side_asked = o.texture_side_max;
+  auto open_again = [&](std::uint32_t side_max) {
+    opened->renderer = Renderer();
+    opened->source = SceneSource();
+    return open_with_textures(o, hooks, side_max, opened);
+  };
   const Status status = open_with_textures(o, hooks, o.texture_side_max, opened);
   const std::size_t bytes_wanted = opened->source.bytes_wanted;
   Status latest = status;
-  for (;;) {
-    const std::uint32_t side_max = smaller_textures(*opened, latest);
-    if (side_max == 0) break;
-    opened->renderer = Renderer();
-    opened->source = SceneSource();
-    latest = open_with_textures(o, hooks, side_max, opened);
+  std::uint32_t side_max = o.texture_side_max, best_side = 0;  // the largest textures with the fewest slow parts
+  for (int fewest = 0;; latest = open_again(side_max)) {
+    if (latest.ok && (best_side == 0 || slow_parts(opened->renderer) < fewest))
+      best_side = side_max, fewest = slow_parts(opened->renderer);
+    const std::uint32_t smaller = smaller_textures(*opened, latest);
+    if (smaller == 0) break;
+    side_max = smaller;
   }
-  if (!latest.ok && !status.ok) opened->source.bytes_wanted = bytes_wanted;
-  return latest.ok || status.ok ? latest : status;
+  if (best_side == 0) {
+    opened->source.bytes_wanted = bytes_wanted;
+    return status;
+  }
+  return side_max == best_side ? latest : open_again(best_side);
 }
 
 Status start_scene(OpenScene* opened, const CommonOptions& o) {
@@ -194,6 +207,10 @@ namespace {
 void print_texture_note(const OpenScene& opened) {
   const SceneSource& source = opened.source;
   const Settings& settings = opened.renderer.settings;
+  const Scene& scene = opened.renderer.scene;
+  if (source.has_all_levels && opened.texture_side_asked != kTextureSideMax && scene.triangles.count)
+    print_note(std::string("--texture-max has no effect: ") +
+               (scene.textures.empty() ? "the scene has no textures" : "no texture has more texels a side"));
   if (source.has_all_levels || settings.texture_side_max == opened.texture_side_asked) return;
   const std::uint64_t wanted = opened.renderer.memory.plan.total_bytes + source.whole_bytes - source.baked_bytes;
   std::string text =

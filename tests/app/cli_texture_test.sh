@@ -59,6 +59,8 @@ side=$("${run[@]}" render levels.pray "${view[@]}" --memory 200K -o little.ppm 2
 expect render_as_in_little_memory 0 'ns per pixel' render levels.pray "${view[@]}" --texture-max "${side:-0}" -o asked.ppm
 check little_memory_shows_smaller_textures cmp -s little.ppm asked.ppm
 expect too_little_memory 1 'the scene needs .* MiB of memory but' render levels.pray "${view[@]}" --memory 64K -o refused.ppm
+expect textures_are_no_larger 0 '--texture-max has no effect: no texture has more texels a side' render levels.pray "${view[@]}" --texture-max 2048 -o whole.ppm
+expect textures_absent 0 '--texture-max has no effect: the scene has no textures' render cube "${view[@]}" --texture-max 64 -o cube.ppm
 expect textures_of_no_texels 1 '--texture-max is 0' render levels.pray --texture-max 0 -o refused.ppm
 if [ ${#run[@]} = 1 ] && "${run[@]}" --help | grep -q '^ *serve '; then
   mkdir scenes && cp levels.pray floor.obj floor.mtl floor.tga scenes/

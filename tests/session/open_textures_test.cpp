@@ -45,15 +45,21 @@ struct Opened {
   Status status;
   ContentHash identity;
   Opened(const NoiseFile& file, std::size_t kibibytes, std::uint32_t side_max = kTextureSideMax,
-         const char* coherence = "off") {
+         std::uint32_t fast_side_max = 0) {
     CommonOptions o;
-    o.scene = file.path, o.size = "80x60", o.threads = 1, o.texture_side_max = side_max, o.coherence = coherence;
+    o.scene = file.path, o.size = "80x60", o.threads = 1, o.texture_side_max = side_max;
     o.memory = std::to_string(kibibytes) + "K";
     OpenHooks hooks;
     hooks.output_bytes = [](const Settings&) { return OutputNeed(0); };
     hooks.loaded = [this](const SceneSource& source, Renderer* renderer) {
       return identify_scene(source, renderer, &identity);
     };
+    if (fast_side_max > 0)  // the side from which the fast accelerator does not fit
+      hooks.plan = [=](Renderer* renderer, const SceneStorage& storage, const OutputNeed& output) {
+        const Status planned = plan_renderer(renderer, storage, output);
+        renderer->accel.is_fallback = renderer->settings.texture_side_max > fast_side_max;
+        return planned;
+      };
     status = open_scene(o, hooks, &scene);
     if (status.ok) status = start_scene(&scene, o);
   }
@@ -116,6 +122,18 @@ TEST_CASE("open_scene_prefers_the_fast_accelerator_to_large_levels") {
   }
   CHECK(is_whole);
   CHECK(is_shrunk);
+}
+
+// Goal: levels make way only if that helps. Method: an accelerator that fits from 1,024 texels, from 512, or never.
+TEST_CASE("open_scene_keeps_levels_that_would_make_way_in_vain") {
+  const NoiseFile file("open_vain.pray", 2048, 0);
+  const std::uint32_t fast[] = {1024, 512, 256}, expected[] = {1024, 512, 2048};
+  for (int i = 0; i < 3; ++i) {
+    Opened opened(file, 65536, kTextureSideMax, fast[i]);
+    REQUIRE(opened.status.ok);
+    CHECK(opened.side() == expected[i]);
+    CHECK(opened.scene.renderer.accel.is_fallback == (expected[i] == 2048));
+  }
 }
 
 // Goal: a limit by hand costs no memory for what it leaves out, and one that leaves nothing out changes nothing.
