@@ -37,6 +37,7 @@ struct Bundle {
   const HitFilter* filter;
   std::uint64_t open;  // rays not yet found to be blocked
   std::uint8_t place[kRays];
+  std::uint32_t from[kRays];  // the triangles on which rays begin, as in Ray
   alignas(64) float origin[3][kRays], direction[3][kRays], t_max[kRays];
   alignas(64) float shear_x[kRays], shear_y[kRays];  // as in make_sheared_ray()
   // Coordinate differences along kz from the origin: between hit_low and hit_high a hit counts; a triangle between

@@ -210,7 +210,7 @@ ShaftPassing test_rays_of(const Bundle& b, const TriangleBlock& block, int trian
       [&](int k, int axis) { return F::splat(block.vertex[k][axis][triangle]); });
 }
 
-// Returns whether a triangle that may cross a segment blocks it, given the result of the lane that tested both. A
+// Returns whether a triangle that may cross a segment, and does not hold its beginning, blocks it, given the result of the lane that tested both. A
 // filter that does not read the point is asked first, because it is cheaper than the full test.
 inline bool blocks_segment(const Bundle& b, const TriangleBlock& block, int triangle, int i, ShaftPassing found,
                            int lane) {
@@ -235,17 +235,22 @@ inline void close_ray(Bundle* b, int i) { b->open &= ~(std::uint64_t(1) << i); }
 
 // Closes the rays blocked by four triangles; lane 4 i + k has ray first + i and triangle k.
 inline void settle_leaf_triangles(Bundle* b, const TriangleBlock& block, ShaftPassing found, int first) {
+  auto begins_on = [&](int lane) { return block.triangle[lane % 4] == b->from[first + lane / 4]; };
   if (!b->filter)
-    for (unsigned sure = found.sure; sure; sure &= sure - 1) close_ray(b, first + __builtin_ctz(sure) / 4);
+    for (unsigned sure = found.sure; sure; sure &= sure - 1)
+      if (const int lane = __builtin_ctz(sure); !begins_on(lane)) close_ray(b, first + lane / 4);
   for (unsigned pass = found.pass; pass; pass &= pass - 1) {
     int lane = __builtin_ctz(pass), i = first + lane / 4;
-    if (is_open(*b, i) && blocks_segment(*b, block, lane % 4, i, found, lane)) close_ray(b, i);
+    if (is_open(*b, i) && !begins_on(lane) && blocks_segment(*b, block, lane % 4, i, found, lane)) close_ray(b, i);
   }
 }
 
 // Closes the rays blocked by one triangle; lane i has ray first + i.
 inline void settle_rays_of(Bundle* b, const TriangleBlock& block, int triangle, ShaftPassing found, int first) {
+  for (unsigned pass = found.pass; pass; pass &= pass - 1)  // without the triangles on which rays begin
+    if (block.triangle[triangle] == b->from[first + __builtin_ctz(pass)]) found.pass ^= pass & (0 - pass);
   if (!found.pass) return;
+  found.sure &= found.pass;
   if (!b->filter || !b->filter->reads_point) {
     if (b->filter && !b->filter->accept(b->filter->context, block.triangle[triangle], 0, 0)) return;
     b->open &= ~(std::uint64_t{found.sure} << first);
