@@ -49,7 +49,8 @@ inline std::uint32_t magnitude_bits(float x) {
 class DenormalGuard {
  public:
   std::uint32_t coordinate = ~0u, end = ~0u;  // least magnitude of an origin's coordinate, least positive end; less one
-  std::uint32_t span = 0, reach = 0;  // greatest quotient of a direction's components, and component above kDirectionMin
+  std::uint32_t span = 0,
+                reach = 0;  // greatest quotient of a direction's components, and component above kDirectionMin
 
   void add_origin(const Vec3& origin) {
     for (int axis = 0; axis < 3; ++axis) keep_least(magnitude_bits(origin[axis]) - 1, &coordinate);

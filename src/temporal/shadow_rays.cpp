@@ -35,8 +35,8 @@ std::uint64_t blocked_among(const ShadowRays& s, std::uint64_t which, Trace trac
 ShadowFilters::ShadowFilters(const MovingGeometry& geometry_, const HitFilter& inner_)
     : geometry(geometry_), inner(inner_), moving{accept_moving, this}, other{accept_other, this} {}
 
-std::uint64_t blocked_by_scene(const FrameData& frame, const ShadowRays& s, std::uint64_t which, const HitFilter* filter,
-                               TraceStats* stats) {
+std::uint64_t blocked_by_scene(const FrameData& frame, const ShadowRays& s, std::uint64_t which,
+                               const HitFilter* filter, TraceStats* stats) {
   const Geometry& scene = frame.geometry;
   return blocked_among(s, which, [&](const SegmentPacket& some) {
     return scene.first_rays->occluded_packet(scene.accel, some, filter, stats);

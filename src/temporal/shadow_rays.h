@@ -20,10 +20,10 @@ struct ShadowRays {
   SegmentPacket rays;
   std::uint64_t pixel[kPacketMax];  // by ray, as a bit of the tile
 };
-// Masks of the rays among `which` that something blocks, in the scene or in an accelerator of the moving geometry; bit i
-// is ray i.
-std::uint64_t blocked_by_scene(const FrameData& frame, const ShadowRays& s, std::uint64_t which, const HitFilter* filter,
-                               TraceStats* stats);
+// Masks of the rays among `which` that something blocks, in the scene or in an accelerator of the moving geometry; bit
+// i is ray i.
+std::uint64_t blocked_by_scene(const FrameData& frame, const ShadowRays& s, std::uint64_t which,
+                               const HitFilter* filter, TraceStats* stats);
 std::uint64_t blocked_by_moving(const Accel& moving, const ShadowRays& s, std::uint64_t which, const HitFilter* filter,
                                 TraceStats* stats);
 
