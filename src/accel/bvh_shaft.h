@@ -90,6 +90,7 @@ inline void gather_segments(const SegmentPacket& rays, const std::int8_t* classe
   b->count = 0;
   for (std::uint32_t i = 0; i < rays.count; ++i)
     if (!classes || classes[i] == wanted) b->place[b->count++] = static_cast<std::uint8_t>(i);
+  for (int n = 0; n < b->count; ++n) b->from[n] = rays.from[b->place[n]];
   int padded = padded_count(*b);
   for (int row = 0; row < 7; ++row) {
     if (classes) {

@@ -45,34 +45,44 @@ inline std::uint32_t magnitude_bits(float x) {
   return word << 1;
 }
 
-// Tests rays one by one.
+// Extremes of the numbers of some rays, as integers, from which it follows whether any denormal can occur.
 class DenormalGuard {
  public:
+  std::uint32_t coordinate = ~0u, end = ~0u;  // least magnitude of an origin's coordinate, least positive end; less one
+  std::uint32_t span = 0,
+                reach = 0;  // greatest quotient of a direction's components, and component above kDirectionMin
+
   void add_origin(const Vec3& origin) {
-    for (int axis = 0; axis < 3; ++axis) keep_least(magnitude_bits(origin[axis]) - 1, &coordinate_);
+    for (int axis = 0; axis < 3; ++axis) keep_least(magnitude_bits(origin[axis]) - 1, &coordinate);
   }
   void add_direction(float x, float y, float z) {
     std::uint32_t a = magnitude_bits(x), b = magnitude_bits(y), c = magnitude_bits(z);
     std::uint32_t most = a > b ? a : b, least = a - 1 < b - 1 ? a - 1 : b - 1;
     if (c > most) most = c;
     if (c - 1 < least) least = c - 1;
-    // Bounds on the exponents of shears.
-    if (most - least > kShearSpan + 1 || most - kDirectionMin > kDirectionMax - kDirectionMin) safe_ = false;
+    keep_most(most - least, &span), keep_most(most - kDirectionMin, &reach);
   }
   void add_end(float t_max) {
-    if (t_max < kCoordinateMin && t_max > 0) safe_ = false;
+    std::uint32_t word;
+    std::memcpy(&word, &t_max, sizeof word);
+    keep_least(word - 1, &end);
   }
-  bool is_safe() const { return safe_ && coordinate_ >= kCoordinateBits - 1; }
+  bool is_safe() const {
+    return coordinate >= kCoordinateBits - 1 && end >= kCoordinateBits / 2 - 1 && span <= kShearSpan + 1 &&
+           reach <= kDirectionMax - kDirectionMin;
+  }
+
+  static constexpr std::uint32_t kDirectionMin = (127u - 60) << 24, kDirectionMax = (127u + 30) << 24;  // 2^-60, 2^30
 
  private:
   static constexpr std::uint32_t kShearSpan = 40u << 24;
-  static constexpr std::uint32_t kDirectionMin = (127u - 60) << 24, kDirectionMax = (127u + 30) << 24;  // 2^-60, 2^30
+  static constexpr std::uint32_t kCoordinateBits = (127u - 62) << 24;  // kCoordinateMin as bits
   static void keep_least(std::uint32_t value, std::uint32_t* least) {
     if (value < *least) *least = value;
   }
-  static constexpr std::uint32_t kCoordinateBits = (127u - 62) << 24;  // kCoordinateMin as bits
-  std::uint32_t coordinate_ = ~0u;
-  bool safe_ = true;
+  static void keep_most(std::uint32_t value, std::uint32_t* most) {
+    if (value > *most) *most = value;
+  }
 };
 
 inline bool is_safe_to_flush(const Accel& accel, const Ray& ray) {
@@ -82,23 +92,33 @@ inline bool is_safe_to_flush(const Accel& accel, const Ray& ray) {
   guard.add_end(ray.t_max);
   return guard.is_safe() && accel.least_coordinate >= kCoordinateMin;
 }
+// Adds the rays of a packet from number `first` on.
+inline void add_directions(const float (&rows)[3][kPacketMax], std::uint32_t first, std::uint32_t count,
+                           DenormalGuard* guard) {
+  for (std::uint32_t i = first; i < count; ++i) guard->add_direction(rows[0][i], rows[1][i], rows[2][i]);
+}
+inline void add_segments(const SegmentPacket& rays, std::uint32_t first, DenormalGuard* guard) {
+  add_directions(rays.direction, first, rays.count, guard);
+  for (std::uint32_t i = first; i < rays.count; ++i)
+    guard->add_origin({rays.origin[0][i], rays.origin[1][i], rays.origin[2][i]}), guard->add_end(rays.t_max[i]);
+}
+
 inline bool is_safe_to_flush(const Accel& accel, const RayPacket& rays) {
-  if (!(accel.least_coordinate >= kCoordinateMin)) return false;
   DenormalGuard guard;
   guard.add_origin(rays.origin), guard.add_end(rays.t_max);
-  for (std::uint32_t i = 0; i < rays.count; ++i)
-    guard.add_direction(rays.direction[0][i], rays.direction[1][i], rays.direction[2][i]);
-  return guard.is_safe();
+  add_directions(rays.direction, 0, rays.count, &guard);
+  return guard.is_safe() && accel.least_coordinate >= kCoordinateMin;
 }
 inline bool is_safe_to_flush(const Accel& accel, const SegmentPacket& rays) {
-  if (!(accel.least_coordinate >= kCoordinateMin)) return false;
   DenormalGuard guard;
-  for (std::uint32_t i = 0; i < rays.count; ++i) {
-    guard.add_origin({rays.origin[0][i], rays.origin[1][i], rays.origin[2][i]});
-    guard.add_direction(rays.direction[0][i], rays.direction[1][i], rays.direction[2][i]);
-    guard.add_end(rays.t_max[i]);
-  }
-  return guard.is_safe();
+  add_segments(rays, 0, &guard);
+  return guard.is_safe() && accel.least_coordinate >= kCoordinateMin;
 }
+
+#if defined(POCKETRAY_HAVE_NEON32)
+// Four rays at a time; part of the NEON kernels.
+bool is_safe_to_flush_by_fours(const Accel& accel, const RayPacket& rays);
+bool is_safe_to_flush_by_fours(const Accel& accel, const SegmentPacket& rays);
+#endif
 
 }  // namespace pocketray

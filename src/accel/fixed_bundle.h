@@ -19,11 +19,12 @@ struct FixedBundle {
   std::int32_t start[kPacketMax];    // depth of the first plane of the hulls from the ray's origin: 0 or less
   DualRay ray[kPacketMax];
   std::uint8_t place[kPacketMax];  // index in the packet
+  std::uint32_t from[kPacketMax];  // the triangle on which the ray begins, as in Ray
 };
 
 inline void add_ray(FixedBundle* b, const Ray& ray, std::uint32_t place) {
   make_dual_ray(ray, b->frame, &b->ray[b->count]);
-  b->place[b->count++] = static_cast<std::uint8_t>(place);
+  b->from[b->count] = ray.from, b->place[b->count++] = static_cast<std::uint8_t>(place);
 }
 
 // Sets everything but frame, count, ray and place. `limit` has the depths at which rays end.
@@ -165,7 +166,8 @@ std::uint64_t occluded_in_bundle(const FixedQuery<Tree>& query, FixedBundle* b) 
             counts.triangles += static_cast<std::uint32_t>(leaf.count);
             bool found = false;
             for (int at = 0; at < leaf.count && !found; ++at)
-              found = is_blocked(b->ray[i], end[i], query.filter, *leaf.block, at, leaf.triangle[at]);
+              found = leaf.block->triangle[at] != b->from[i] &&
+                      is_blocked(b->ray[i], end[i], query.filter, *leaf.block, at, leaf.triangle[at]);
             if (found) blocked |= std::uint64_t{1} << b->place[i], --open_count;
             return found;
           });

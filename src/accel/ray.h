@@ -34,21 +34,23 @@ inline Ray ray_of(const RayPacket& rays, std::uint32_t i) {
 }
 
 // Rays with individual origins and ends. Fast for coherent rays, such as those to one light or along one direction,
-// with neighbours adjacent as in RayPacket. They name no triangles.
+// with neighbours adjacent as in RayPacket. They name only the triangles on which they begin.
 struct SegmentPacket {
   std::uint32_t count;  // up to kPacketMax
   alignas(64) float origin[3][kPacketMax], direction[3][kPacketMax], t_max[kPacketMax];
+  std::uint32_t from[kPacketMax];
 };
 
 inline Ray ray_of(const SegmentPacket& rays, std::uint32_t i) {
   return {{rays.origin[0][i], rays.origin[1][i], rays.origin[2][i]},
           {rays.direction[0][i], rays.direction[1][i], rays.direction[2][i]},
-          rays.t_max[i]};
+          rays.t_max[i],
+          rays.from[i]};
 }
 inline void set_ray(SegmentPacket* rays, std::uint32_t i, const Ray& ray) {
   for (int axis = 0; axis < 3; ++axis)
     rays->origin[axis][i] = ray.origin[axis], rays->direction[axis][i] = ray.direction[axis];
-  rays->t_max[i] = ray.t_max;
+  rays->t_max[i] = ray.t_max, rays->from[i] = ray.from;
 }
 
 // Hit point: (1−u−v)·v0 + u·v1 + v·v2.

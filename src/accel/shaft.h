@@ -32,11 +32,14 @@ struct Bundle {
   bool converges;         // to a point; else the rays are parallel
   float middle[3];        // the point; else the first origin
   float slope[2];         // parallel: how x and y change with depth
+  bool has_bounds;        // whether low and high are set
+  float low[3], high[3];  // bounds of the origins
   float slack;            // 2^-19 Z and eight times the spread
   bool cubes_are_finite;  // cubes of coordinates are finite
   const HitFilter* filter;
   std::uint64_t open;  // rays not yet found to be blocked
   std::uint8_t place[kRays];
+  std::uint32_t from[kRays];  // the triangles on which rays begin, as in Ray
   alignas(64) float origin[3][kRays], direction[3][kRays], t_max[kRays];
   alignas(64) float shear_x[kRays], shear_y[kRays];  // as in make_sheared_ray()
   // Coordinate differences along kz from the origin: between hit_low and hit_high a hit counts; a triangle between
@@ -68,7 +71,7 @@ inline bool find_middle(Bundle* b) {
     }
     longest = max(longest, Float4::load(b->t_max + i));
   }
-  b->slope[0] = b->slope[1] = 0;
+  b->slope[0] = b->slope[1] = 0, b->has_bounds = false;
   // Within this reach the slack stays below no_child_box(); with more spread hardly anything could be skipped.
   b->converges =
       highest(longest) <= 1 && highest(reach) <= 8 * kCoordinateMax && highest(spread) <= highest(reach) * 0x1p-12f;
@@ -155,6 +158,18 @@ inline bool prepare_bundle(const Box& bounds, Bundle* b) {
   }
   set_windows(b);
   return true;
+}
+
+inline void find_bounds(Bundle* b) {
+  for (int k = 0; k < 3; ++k) {
+    Float4 low = Float4::load(b->origin[k]), high = low;
+    for (int i = 4; i < padded_count(*b); i += 4) {
+      const Float4 origin = Float4::load(b->origin[k] + i);
+      low = min(low, origin), high = max(high, origin);
+    }
+    b->low[k] = lowest(low), b->high[k] = highest(high);
+  }
+  b->has_bounds = true;
 }
 
 // Boxes projected to the plane, four at a time, and their nearest depths.

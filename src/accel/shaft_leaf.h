@@ -13,6 +13,7 @@ inline namespace POCKETRAY_ISA {
 
 constexpr int kShaftLeaves = 8;  // searched at once
 constexpr int kFewTests = 6;     // tests of four triangles of a leaf: up to this many are faster than meet_window()
+constexpr int kManyTests = 24;   // and from this many, meet_planes() pays as well
 
 struct ShaftBatch {
   int count = 0;
@@ -55,6 +56,38 @@ inline unsigned meet_window(const Bundle& b, const TriangleBlock& block) {
   return bits((zero <= high_min) | (low_max <= zero));
 }
 
+// Mask of the triangles of a leaf whose planes some segment may cross. cross_triangle() puts a hit at a point of the
+// segment; displaced across its dominant axis by less than 16u Z, u = 2^-24 and Z as in shaft.h, it is a point of the
+// triangle, also close to an edge. With E the greatest component of two edges, the normal errs by less than 8.1u E² and
+// is at most 2E², so that displacement changes a height over the plane (times the normal) by less than 128u E² Z, and
+// rounding by less than 97u E² Z. The ends of converging rays are off by an eighth of the slack, which changes theirs
+// by less than .75 E² slack; a direction along the plane that rounding turns away from it changes them by less than 95u
+// E² Z. The slack is at least 32u Z: together, less than 12 E² slack.
+inline unsigned meet_planes(Bundle* bundle, const TriangleBlock& block) {
+  if (!bundle->has_bounds) find_bounds(bundle);
+  const Bundle& b = *bundle;
+  const int axes[] = {b.kx, b.ky, b.kz};
+  Float4 corner[3], edge[3], other[3], size = Float4::splat(0);
+  for (int k = 0; k < 3; ++k) {
+    corner[k] = Float4::load(block.vertex[0][axes[k]]);
+    edge[k] = Float4::load(block.vertex[1][axes[k]]) - corner[k];
+    other[k] = Float4::load(block.vertex[2][axes[k]]) - corner[k];
+    size = max(size, max(abs(edge[k]), abs(other[k])));
+  }
+  Float4 low = Float4::splat(0), high = low, end = low;
+  for (int k = 0; k < 3; ++k) {
+    const int i = k == 2 ? 0 : k + 1, j = 3 - k - i;
+    const Float4 normal = edge[i] * other[j] - edge[j] * other[i];
+    const Float4 a = normal * (Float4::splat(b.low[k]) - corner[k]),
+                 c = normal * (Float4::splat(b.high[k]) - corner[k]);
+    low = low + min(a, c), high = high + max(a, c);
+    end = end + normal * (b.converges ? Float4::splat(b.middle[k]) - corner[k] : Float4::splat(b.direction[k][0]));
+  }
+  const Float4 error = size * size * Float4::splat(16 * b.slack) + Float4::splat(kUnderflow), zero = Float4::splat(0);
+  if (b.converges) return bits((min(low, end) <= error) & (zero - error <= max(high, end)));
+  return bits(((low <= error) | (end < zero)) & ((zero - error <= high) | (zero < end)));
+}
+
 // Number of tests of four triangles for the rays of a mask of kLanes bits: one per kLanes/4 rays.
 template <int kLanes>
 int tests_by_rays(unsigned rays) {
@@ -85,8 +118,9 @@ inline unsigned rays_through(const Bundle& b, const Bounds4& bounds, Float4 near
 }
 
 template <int kLanes, class Tree>
-int list_shaft_tests(const Tree& bvh, const Bundle& b, ShaftBatch* leaves, ShaftTest* tests) {
+int list_shaft_tests(const Tree& bvh, Bundle* bundle, ShaftBatch* leaves, ShaftTest* tests) {
   constexpr unsigned kAllLanes = (1u << kLanes) - 1;
+  const Bundle& b = *bundle;
   int count = 0;
   for (int leaf = 0; leaf < leaves->count; ++leaf) {
     int begin = count, by_rays = 0;
@@ -108,6 +142,7 @@ int list_shaft_tests(const Tree& bvh, const Bundle& b, ShaftBatch* leaves, Shaft
     leaves->block[leaf] = &bvh.leaf(leaves->child[leaf], &leaves->scratch[leaf]);
     unsigned in_use = (1u << leaf_triangle_count(leaves->child[leaf])) - 1;
     if (by_rays >= kFewTests && b.cubes_are_finite) in_use &= meet_window(b, *leaves->block[leaf]);
+    if (by_rays >= kManyTests && in_use && b.cubes_are_finite) in_use &= meet_planes(bundle, *leaves->block[leaf]);
     if (!in_use) count = begin;
     leaves->in_use[leaf] = in_use;
     leaves->in_use_count[leaf] = tests_by_rays<4>(in_use);
@@ -210,8 +245,9 @@ ShaftPassing test_rays_of(const Bundle& b, const TriangleBlock& block, int trian
       [&](int k, int axis) { return F::splat(block.vertex[k][axis][triangle]); });
 }
 
-// Returns whether a triangle that may cross a segment blocks it, given the result of the lane that tested both. A
-// filter that does not read the point is asked first, because it is cheaper than the full test.
+// Returns whether a triangle that may cross a segment, and does not hold its beginning, blocks it, given the result of
+// the lane that tested both. A filter that does not read the point is asked first, because it is cheaper than the full
+// test.
 inline bool blocks_segment(const Bundle& b, const TriangleBlock& block, int triangle, int i, ShaftPassing found,
                            int lane) {
   const bool early = b.filter && !b.filter->reads_point;
@@ -235,17 +271,22 @@ inline void close_ray(Bundle* b, int i) { b->open &= ~(std::uint64_t(1) << i); }
 
 // Closes the rays blocked by four triangles; lane 4 i + k has ray first + i and triangle k.
 inline void settle_leaf_triangles(Bundle* b, const TriangleBlock& block, ShaftPassing found, int first) {
+  auto begins_on = [&](int lane) { return block.triangle[lane % 4] == b->from[first + lane / 4]; };
   if (!b->filter)
-    for (unsigned sure = found.sure; sure; sure &= sure - 1) close_ray(b, first + __builtin_ctz(sure) / 4);
+    for (unsigned sure = found.sure; sure; sure &= sure - 1)
+      if (const int lane = __builtin_ctz(sure); !begins_on(lane)) close_ray(b, first + lane / 4);
   for (unsigned pass = found.pass; pass; pass &= pass - 1) {
     int lane = __builtin_ctz(pass), i = first + lane / 4;
-    if (is_open(*b, i) && blocks_segment(*b, block, lane % 4, i, found, lane)) close_ray(b, i);
+    if (is_open(*b, i) && !begins_on(lane) && blocks_segment(*b, block, lane % 4, i, found, lane)) close_ray(b, i);
   }
 }
 
 // Closes the rays blocked by one triangle; lane i has ray first + i.
 inline void settle_rays_of(Bundle* b, const TriangleBlock& block, int triangle, ShaftPassing found, int first) {
+  for (unsigned pass = found.pass; pass; pass &= pass - 1)  // without the triangles on which rays begin
+    if (block.triangle[triangle] == b->from[first + __builtin_ctz(pass)]) found.pass ^= pass & (0 - pass);
   if (!found.pass) return;
+  found.sure &= found.pass;
   if (!b->filter || !b->filter->reads_point) {
     if (b->filter && !b->filter->accept(b->filter->context, block.triangle[triangle], 0, 0)) return;
     b->open &= ~(std::uint64_t{found.sure} << first);
@@ -263,7 +304,7 @@ void search_shaft_leaves(const Tree& bvh, Bundle* b, ShaftBatch* batch) {
   constexpr int kAtOnce = kLanes / 4;
   constexpr unsigned kEach = 0x1111;
   ShaftTest tests[kShaftLeaves * kPacketMax / kLanes];
-  int count = list_shaft_tests<kLanes>(bvh, *b, batch, tests);
+  int count = list_shaft_tests<kLanes>(bvh, b, batch, tests);
   for (int n = 0; n < count; ++n) {
     const int leaf = tests[n].leaf, first = tests[n].first;
     const TriangleBlock& block = *batch->block[leaf];

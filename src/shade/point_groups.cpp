@@ -22,7 +22,7 @@ class PointTester {
   bool is_probe(std::uint32_t point, Ray* ray) const {
     LightSample sample;
     if (!pocketray::is_probe(frame_, surface_, run(), tracer_->light_points[first_ + point], &sample)) return false;
-    *ray = {safe_origin(surface_, 1), sample.to_light, sample.t_max};
+    *ray = {safe_origin(surface_, 1), sample.to_light, sample.t_max, surface_.hit.triangle};
     return true;
   }
   // Tests a point that lights up the surface from below its triangle's plane.

@@ -151,7 +151,8 @@ Vec3 clear_transmittance(Tracer* tracer, Ray ray, const ShadowContext& context, 
 
 inline Ray shadow_ray(const FrameData& frame, const Surface& s, const LightSample& sample) {
   const bool below = is_below(s, sample.direction);
-  return {below ? curved_origin(frame, s) : safe_origin(s, 1), sample.to_light, sample.t_max};
+  if (below) return {curved_origin(frame, s), sample.to_light, sample.t_max};
+  return {safe_origin(s, 1), sample.to_light, sample.t_max, s.hit.triangle};
 }
 
 constexpr EffectMask kClearEffects = bit(Effect::refraction) | bit(Effect::alpha_blend);

@@ -139,7 +139,8 @@ class TilePoints {
       if (packet_.count == kPacketMax) trace();
       pixel_[packet_.count] = static_cast<std::uint8_t>(place),
       point_[packet_.count] = static_cast<std::uint8_t>(point);
-      set_ray(&packet_, packet_.count++, {receivers_.origin[place], position - shadows_->surface[place].point, 1});
+      const Surface& s = shadows_->surface[place];
+      set_ray(&packet_, packet_.count++, {receivers_.origin[place], position - s.point, 1, s.hit.triangle});
     }
   }
   // Flushes the packet if the point is in another plane: its rays end in one plane, whose triangles do not block them.

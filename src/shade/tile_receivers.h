@@ -64,7 +64,7 @@ struct KnownViews {
     }
     traced.set(place);
     pixel[packet.count] = receivers.pixel[k];
-    set_ray(&packet, packet.count++, {receivers.origin[place], sample.to_light, sample.t_max});
+    set_ray(&packet, packet.count++, {receivers.origin[place], sample.to_light, sample.t_max, s.hit.triangle});
   }
   if (packet.count > 0)
     for (std::uint64_t blocked = trace_packet(tracer, packet, emitter_of(light)); blocked; blocked &= blocked - 1)

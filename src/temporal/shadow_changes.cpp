@@ -67,7 +67,8 @@ void list_shadow_rays(TileSearch* t, const LightRun& run, const LightPoint& ligh
     bool below = !(dot(surface.geometric, sample.direction) > 0);  // as in direct_light()
     s->pixel[s->rays.count] = bit;
     set_ray(&s->rays, s->rays.count++,
-            {below ? curved_origin(t->frame, surface) : safe_origin(surface, 1), sample.to_light, sample.t_max});
+            {below ? curved_origin(t->frame, surface) : safe_origin(surface, 1), sample.to_light, sample.t_max,
+             below ? kNoTriangle : surface.hit.triangle});
   }
 }
 
@@ -110,12 +111,12 @@ void find_changed_shadows(TileSearch* t, const LightRun& run, std::uint32_t ligh
   }
   auto idle_of = [&](std::uint64_t which) {
     t->counts->static_rays += static_cast<std::uint64_t>(__builtin_popcountll(which));
-    return blocked_among(*frame.geometry.first_rays, frame.geometry.accel, s, which, &filters.other, t->stats);
+    return blocked_by_scene(frame, s, which, &filters.other, t->stats);
   };
   const std::uint64_t all = ~std::uint64_t(0) >> (kPacketMax - s.rays.count);
   std::uint64_t idle = is_kept ? idle_of(fresh) : 0;
-  was |= blocked_among(kBvhAccel, m.last, s, fresh & ~idle, filter, t->stats);
-  const std::uint64_t is = blocked_among(kBvhAccel, m.now, s, all & ~idle, filter, t->stats);
+  was |= blocked_by_moving(m.last, s, fresh & ~idle, filter, t->stats);
+  const std::uint64_t is = blocked_by_moving(m.now, s, all & ~idle, filter, t->stats);
   t->counts->moving_rays += static_cast<std::uint64_t>(__builtin_popcountll(fresh & ~idle)) +
                             static_cast<std::uint64_t>(__builtin_popcountll(all & ~idle));
   std::uint64_t changed = clear ? was | is : was ^ is;

@@ -13,13 +13,9 @@ bool accept_other(const void* context, std::uint32_t triangle, float u, float v)
   return !f.inner.accept || f.inner.accept(f.inner.context, triangle, u, v);
 }
 
-}  // namespace
-
-ShadowFilters::ShadowFilters(const MovingGeometry& geometry_, const HitFilter& inner_)
-    : geometry(geometry_), inner(inner_), moving{accept_moving, this}, other{accept_other, this} {}
-
-std::uint64_t blocked_among(const AccelTraversal& traversal, const Accel& accel, const ShadowRays& s,
-                            std::uint64_t which, const HitFilter* filter, TraceStats* stats) {
+// Collects the rays, and calls trace(packet).
+template <class Trace>
+std::uint64_t blocked_among(const ShadowRays& s, std::uint64_t which, Trace trace) {
   if (which == 0) return 0;
   SegmentPacket some;
   std::uint8_t place[kPacketMax];
@@ -29,9 +25,30 @@ std::uint64_t blocked_among(const AccelTraversal& traversal, const Accel& accel,
     set_ray(&some, some.count, ray_of(s.rays, place[some.count]));
     ++some.count;
   }
-  std::uint64_t found = traversal.occluded_packet(accel, some, filter, stats), blocked = 0;
+  std::uint64_t found = trace(some), blocked = 0;
   for (std::uint32_t i = 0; i < some.count; ++i) blocked |= (found >> i & 1) << place[i];
   return blocked;
+}
+
+}  // namespace
+
+ShadowFilters::ShadowFilters(const MovingGeometry& geometry_, const HitFilter& inner_)
+    : geometry(geometry_), inner(inner_), moving{accept_moving, this}, other{accept_other, this} {}
+
+std::uint64_t blocked_by_scene(const FrameData& frame, const ShadowRays& s, std::uint64_t which,
+                               const HitFilter* filter, TraceStats* stats) {
+  const Geometry& scene = frame.geometry;
+  return blocked_among(s, which, [&](const SegmentPacket& some) {
+    return scene.first_rays->occluded_packet(scene.accel, some, filter, stats);
+  });
+}
+
+std::uint64_t blocked_by_moving(const Accel& moving, const ShadowRays& s, std::uint64_t which, const HitFilter* filter,
+                                TraceStats* stats) {
+  return blocked_among(s, which, [&](SegmentPacket& some) {
+    for (std::uint32_t i = 0; i < some.count; ++i) some.from[i] = kNoTriangle;  // its triangles have other numbers
+    return kBvhAccel.occluded_packet(moving, some, filter, stats);
+  });
 }
 
 }  // namespace pocketray

@@ -20,8 +20,11 @@ struct ShadowRays {
   SegmentPacket rays;
   std::uint64_t pixel[kPacketMax];  // by ray, as a bit of the tile
 };
-// Mask of the rays among `which` that something blocks; bit i is ray i.
-std::uint64_t blocked_among(const AccelTraversal& traversal, const Accel& accel, const ShadowRays& s,
-                            std::uint64_t which, const HitFilter* filter, TraceStats* stats);
+// Masks of the rays among `which` that something blocks, in the scene or in an accelerator of the moving geometry; bit
+// i is ray i.
+std::uint64_t blocked_by_scene(const FrameData& frame, const ShadowRays& s, std::uint64_t which,
+                               const HitFilter* filter, TraceStats* stats);
+std::uint64_t blocked_by_moving(const Accel& moving, const ShadowRays& s, std::uint64_t which, const HitFilter* filter,
+                                TraceStats* stats);
 
 }  // namespace pocketray

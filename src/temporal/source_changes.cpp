@@ -59,10 +59,9 @@ void find_blocked_otherwise(TileSearch* t, ShadowRays* s) {
   const ShadowFilters filters(m, {frame.filters.every_shadow ? frame.filters.accept_opaque : nullptr, &shadow});
   const HitFilter* filter = frame.filters.every_shadow ? &filters.moving : nullptr;
   const std::uint64_t all = ~std::uint64_t(0) >> (kPacketMax - s->rays.count);
-  const std::uint64_t changed = blocked_among(kBvhAccel, m.last, *s, all, filter, t->stats) ^
-                                blocked_among(kBvhAccel, m.now, *s, all, filter, t->stats);
-  const std::uint64_t hidden =
-      blocked_among(*frame.geometry.first_rays, frame.geometry.accel, *s, changed, &filters.other, t->stats);
+  const std::uint64_t changed =
+      blocked_by_moving(m.last, *s, all, filter, t->stats) ^ blocked_by_moving(m.now, *s, all, filter, t->stats);
+  const std::uint64_t hidden = blocked_by_scene(frame, *s, changed, &filters.other, t->stats);
   t->counts->moving_rays += 2 * s->rays.count;
   t->counts->static_rays += static_cast<std::uint64_t>(__builtin_popcountll(changed));
   for (std::uint32_t i = 0; i < s->rays.count; ++i)

@@ -125,16 +125,24 @@ TEST_CASE("accel_denormals_are_guarded_against") {
   const Ray plain = {{1, 0, -kCoordinateMin}, {0, 0x1p-40f, -1}, kInfinity};
   auto is_safe = [&](Vec3 origin, Vec3 direction, float t_max) {
     Ray ray = {origin, direction, t_max};
-    RayPacket rays;
-    rays.origin = origin, rays.t_max = t_max, rays.count = 2;
-    SegmentPacket segments;
-    segments.count = 2;
-    set_ray(&segments, 0, plain), set_ray(&segments, 1, ray);
-    for (int axis = 0; axis < 3; ++axis)
-      rays.direction[axis][0] = plain.direction[axis], rays.direction[axis][1] = direction[axis];
-    bool safe = is_safe_to_flush(accel, ray);
-    CHECK(is_safe_to_flush(accel, rays) == safe);
-    CHECK(is_safe_to_flush(accel, segments) == safe);
+    const bool safe = is_safe_to_flush(accel, ray);
+    for (std::uint32_t place = 0; place < 7; ++place) {  // one of four at once, or one of the rest
+      CAPTURE(place);
+      RayPacket rays;
+      SegmentPacket segments;
+      rays.origin = origin, rays.t_max = t_max, rays.count = segments.count = 7;
+      for (std::uint32_t i = 0; i < 7; ++i) {
+        const Ray& own = i == place ? ray : plain;
+        set_ray(&segments, i, own);
+        for (int axis = 0; axis < 3; ++axis) rays.direction[axis][i] = own.direction[axis];
+      }
+      CHECK(is_safe_to_flush(accel, rays) == safe);
+      CHECK(is_safe_to_flush(accel, segments) == safe);
+#if defined(POCKETRAY_HAVE_NEON32)
+      CHECK(is_safe_to_flush_by_fours(accel, rays) == safe);
+      CHECK(is_safe_to_flush_by_fours(accel, segments) == safe);
+#endif
+    }
     return safe;
   };
   CHECK(is_safe(plain.origin, plain.direction, kInfinity));

@@ -96,7 +96,10 @@ SegmentPacket segments_about(Rng* rng, const Mesh& mesh, const Box& bounds, floa
     }
     Vec3 direction = parallel ? light - start : light - origin + random_vec3(rng, miss);
     if (next_u32(rng) % 256 == 0) direction = {0, 0, 0};
-    set_ray(&packet, i, {origin, direction, next_u32(rng) % 16 ? end : 0});
+    const std::uint32_t triangle_count = static_cast<std::uint32_t>(mesh.triangles.size());
+    const bool names_one = triangle_count > 0 && next_u32(rng) % 4 == 0;
+    const std::uint32_t from = names_one ? next_u32(rng) % triangle_count : kNoTriangle;
+    set_ray(&packet, i, {origin, direction, next_u32(rng) % 16 ? end : 0, from});
   }
   return packet;
 }
