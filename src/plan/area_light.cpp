@@ -24,9 +24,14 @@ double triangle_area(const FrameData& frame, std::uint32_t triangle) {
   const Triangle& t = frame.scene->triangles[triangle];
   Vec3 e1 = frame.geometry.positions[t.vertex(1)] - frame.geometry.positions[t.vertex(0)];
   Vec3 e2 = frame.geometry.positions[t.vertex(2)] - frame.geometry.positions[t.vertex(0)];
+  const float longest = max_component(max(abs(e1), abs(e2)));
+  if (longest > 0x1p-15f && longest < 0x1p15f) {
+    const float twice = length(cross(e1, e2));
+    if (twice > 0x1p-40f) return 0.5 * static_cast<double>(twice);
+  }
   // Scaled by a power of two, which is exact, so that edges of any length stay in range.
   int exponent;
-  std::frexp(max_component(max(abs(e1), abs(e2))), &exponent);
+  std::frexp(longest, &exponent);
   for (int axis = 0; axis < 3; ++axis)
     e1[axis] = std::ldexp(e1[axis], -exponent), e2[axis] = std::ldexp(e2[axis], -exponent);
   return std::ldexp(0.5 * static_cast<double>(length(cross(e1, e2))), 2 * exponent);
