@@ -1,6 +1,6 @@
-// The .pray file: one little-endian block that is used in place. A header (magic, version, byte count, CRC-32 of the
-// rest), a table of sections (kind, element size, offset, count), then the arrays of Scene, each aligned to 64 bytes.
-// A file's bytes are hostile until baked_open() has checked them.
+// The .pray file: one little-endian block that is used in place. A header (magic, version, byte count, checksum of
+// the rest), a table of sections (kind, element size, offset, count), then the arrays of Scene, each aligned to 64
+// bytes. A file's bytes are hostile until baked_open() has checked them.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace pocketray {
 
-constexpr std::uint32_t kBakedVersion = 20;    // as written
+constexpr std::uint32_t kBakedVersion = 21;    // as written
 constexpr std::uint32_t kBakedVersionMin = 7;  // oldest readable version; it has no environment, grains or tangents
 
 // Size in bytes of the file that baked_write() makes.
