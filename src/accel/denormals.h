@@ -16,6 +16,7 @@
 
 #include "accel/accel.h"
 #include "base/isa.h"
+#include "base/scan.h"
 
 namespace pocketray {
 
@@ -25,13 +26,7 @@ constexpr float kCoordinateMin = 0x1p-62f;
 // since it is not needed.
 inline float least_coordinate(Array<const Vec3> positions) {
 #if defined(POCKETRAY_HAVE_NEON32)
-  float least = std::numeric_limits<float>::infinity();
-  for (const Vec3& p : positions)
-    for (int axis = 0; axis < 3; ++axis) {
-      float magnitude = std::fabs(p[axis]);
-      if (magnitude < least && magnitude > 0) least = magnitude;
-    }
-  return least;
+  return least_magnitude(positions);
 #else
   (void)positions;
   return 0;

@@ -4,6 +4,10 @@
 
 #include "base/check.h"
 
+#if defined(__ARM_NEON)
+#include <arm_neon.h>
+#endif
+
 namespace pocketray {
 namespace {
 
@@ -15,24 +19,19 @@ constexpr std::size_t kStripeBytes = 32;
 std::uint32_t step(std::uint32_t h, std::uint32_t word) { return (word + (h << kTurn | h >> (32 - kTurn))) * kOdd; }
 
 #if defined(__ARM_NEON)
-// Four lanes; the compiler's own vectors, so that no build needs intrinsics.
-using Words = std::uint32_t __attribute__((vector_size(16)));
-
-Words load(const std::uint8_t* bytes) {
-  Words words;
-  std::memcpy(&words, __builtin_assume_aligned(bytes, 4), sizeof words);
-  return words;
+uint32x4_t load(const std::uint8_t* bytes) {
+  return vld1q_u32(reinterpret_cast<const std::uint32_t*>(__builtin_assume_aligned(bytes, 4)));
 }
-Words step(const Words& h, const Words& words) { return (words + (h << kTurn | h >> (32 - kTurn))) * kOdd; }
+uint32x4_t step(uint32x4_t h, uint32x4_t words) {
+  return vmulq_n_u32(vaddq_u32(words, vsriq_n_u32(vshlq_n_u32(h, kTurn), h, 32 - kTurn)), kOdd);
+}
 
 void add_stripes(const std::uint8_t* bytes, std::size_t stripe_count, std::uint32_t (&lanes)[8]) {
-  Words low, high;
-  std::memcpy(&low, lanes, sizeof low);
-  std::memcpy(&high, lanes + 4, sizeof high);
+  uint32x4_t low = vld1q_u32(lanes), high = vld1q_u32(lanes + 4);
   for (; stripe_count > 0; --stripe_count, bytes += kStripeBytes)
     low = step(low, load(bytes)), high = step(high, load(bytes + 16));
-  std::memcpy(lanes, &low, sizeof low);
-  std::memcpy(lanes + 4, &high, sizeof high);
+  vst1q_u32(lanes, low);
+  vst1q_u32(lanes + 4, high);
 }
 #else
 std::uint32_t load(const std::uint8_t* bytes) {
