@@ -34,7 +34,7 @@ inline float least_coordinate(Array<const Vec3> positions) {
 }
 
 // Magnitude of a float as an integer, which sorts like it. Less one, 0 becomes the greatest of all.
-inline std::uint32_t magnitude_bits(float x) {
+inline std::uint32_t shifted_magnitude(float x) {
   std::uint32_t word;
   std::memcpy(&word, &x, sizeof word);
   return word << 1;
@@ -44,10 +44,10 @@ inline std::uint32_t magnitude_bits(float x) {
 class DenormalGuard {
  public:
   void add_origin(const Vec3& origin) {
-    for (int axis = 0; axis < 3; ++axis) keep_least(magnitude_bits(origin[axis]) - 1, &coordinate_);
+    for (int axis = 0; axis < 3; ++axis) keep_least(shifted_magnitude(origin[axis]) - 1, &coordinate_);
   }
   void add_direction(float x, float y, float z) {
-    std::uint32_t a = magnitude_bits(x), b = magnitude_bits(y), c = magnitude_bits(z);
+    std::uint32_t a = shifted_magnitude(x), b = shifted_magnitude(y), c = shifted_magnitude(z);
     std::uint32_t most = a > b ? a : b, least = a - 1 < b - 1 ? a - 1 : b - 1;
     if (c > most) most = c;
     if (c - 1 < least) least = c - 1;

@@ -5,11 +5,13 @@
 #define POCKETRAY_ISA neon
 #define POCKETRAY_NEON32
 #endif
+#include "accel/fixed_area.h"
 #include "accel/node_check.h"
 #include "base/check.h"
 #include "base/float_bits.h"
 #include "base/scan.h"
 #include "base/simd.h"
+#include "base/soft_float.h"
 #include "base/words4.h"
 #include "scene/triangle_scan.h"
 
@@ -48,19 +50,35 @@ void set_no_rows(OuterRows* rows) {
   }
 }
 
+#if defined(POCKETRAY_HAS_NO_FPU)
+// True only if no lane's triangle has collinear corners.
+struct AreaFound {
+  bool v = true;
+};
+QUICK void find_area(const Float4 (&a)[3], const Float4 (&b)[3], const Float4 (&c)[3], AreaFound* found) {
+  for (int lane = 0; lane < 4; ++lane) {
+    auto corner = [&](const Float4(&p)[3]) { return Vec3{p[0].v[lane], p[1].v[lane], p[2].v[lane]}; };
+    found->v = found->v && surely_has_area(corner(a), corner(b), corner(c));
+  }
+}
+bool in_all_lanes(const AreaFound& found) { return found.v; }
+#else
 // True only in lanes whose triangle does not have collinear corners. A component of the cross product, with rounding
 // errors of less than 5 · 2^-24 of its two products and of less than 2^-60 where NEON flushes denormals, must exceed
 // these.
-Mask4 all_lanes() { return Float4::splat(0) == Float4::splat(0); }
-
+struct AreaFound {
+  Mask4 v = Float4::splat(0) == Float4::splat(0);
+};
 QUICK Mask4 exceeds(const Float4& first, const Float4& second) {
   return (abs(first) + abs(second)) * Float4::splat(0x1p-20f) + Float4::splat(0x1p-60f) < abs(first - second);
 }
-QUICK Mask4 have_area(const Float4 (&a)[3], const Float4 (&b)[3], const Float4 (&c)[3]) {
+QUICK void find_area(const Float4 (&a)[3], const Float4 (&b)[3], const Float4 (&c)[3], AreaFound* found) {
   const Float4 ux = b[0] - a[0], uy = b[1] - a[1], uz = b[2] - a[2];
   const Float4 vx = c[0] - a[0], vy = c[1] - a[1], vz = c[2] - a[2];
-  return exceeds(ux * vy, uy * vx) | exceeds(uy * vz, uz * vy) | exceeds(uz * vx, ux * vz);
+  found->v = found->v & (exceeds(ux * vy, uy * vx) | exceeds(uy * vz, uz * vy) | exceeds(uz * vx, ux * vz));
 }
+bool in_all_lanes(const AreaFound& found) { return bits(found.v) == 15; }
+#endif
 
 // Corners of a leaf's triangles, one a lane.
 struct LeafCorners {
@@ -79,7 +97,7 @@ QUICK bool find_corners(const CheckedTree& tree, std::uint32_t id, std::uint32_t
 // Faults of a node's leaves so far.
 struct Findings {
   Words4 difference;  // bits that differ from what they should be
-  Mask4 has_area;
+  AreaFound area;
 };
 
 // Which leaves are checked: of triangle blocks, with all four lanes in use.
@@ -129,7 +147,7 @@ QUICK bool check_leaf(const CheckedTree& tree, const std::uint8_t* leaf, std::ui
   load_corner<Shape>(corners, 0, leaf, used, a, &findings->difference);
   load_corner<Shape>(corners, 1, leaf, used, b, &findings->difference);
   load_corner<Shape>(corners, 2, leaf, used, c, &findings->difference);
-  findings->has_area = findings->has_area & have_area(a, b, c);
+  find_area(a, b, c, &findings->area);
   set_bounds(a[0], b[0], c[0], &bounds->row[0], &bounds->row[3]);
   set_bounds(a[1], b[1], c[1], &bounds->row[1], &bounds->row[4]);
   set_bounds(a[2], b[2], c[2], &bounds->row[2], &bounds->row[5]);
@@ -146,7 +164,7 @@ template <bool kIsBlock>
 bool node_is_plain(const CheckedTree& tree, const BvhNode& node) {
   constexpr std::size_t kLeafBytes = kIsBlock ? sizeof(TriangleBlock) : sizeof(CompactLeaf);
   OuterRows children[4];
-  Findings findings = {all_words(0), all_lanes()};
+  Findings findings = {all_words(0), AreaFound()};
   for (int lane = 0; lane < 4; ++lane) {
     const std::uint32_t child = node.child[lane];
     if (!(child & kLeafBit)) {
@@ -165,7 +183,7 @@ bool node_is_plain(const CheckedTree& tree, const BvhNode& node) {
   const Words4 difference = findings.difference | difference_of<0>(node, children) | difference_of<1>(node, children) |
                             difference_of<2>(node, children) | difference_of<3>(node, children) |
                             difference_of<4>(node, children) | difference_of<5>(node, children);
-  return !any_bit(difference) && bits(findings.has_area) == 15;
+  return !any_bit(difference) && in_all_lanes(findings.area);
 }
 
 }  // namespace

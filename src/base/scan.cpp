@@ -5,10 +5,14 @@
 #define POCKETRAY_ISA neon
 #define POCKETRAY_NEON32
 #endif
+#include <initializer_list>
+
 #include "base/check.h"
+#include "base/fixed_point.h"
 #include "base/float_bits.h"
 #include "base/scan.h"
 #include "base/simd.h"
+#include "base/soft_float.h"
 #include "base/words4.h"
 
 namespace pocketray {
@@ -136,10 +140,32 @@ Box bounds_of(Array<const Vec3> points) {
   return box;
 }
 
+bool is_surely_inside(const Vec3& v, const SquareRange& range) {
+  std::uint32_t square = 0, most = 0;
+  for (float x : {v.x, v.y, v.z}) {
+    const std::uint32_t size = magnitude(to_fraction(x)) >> 16;
+    square += size * size, most |= magnitude_bits(x) > float_bits(1);
+  }
+  return most == 0 && square >= range.low && square <= range.high;
+}
+
+SquareRange range_within(float low, float high) {
+  constexpr float kOne = 1 << 30;
+  CHECK(low >= 0.5f && high <= 1.5f);
+  constexpr std::uint32_t kMargin = 1u << 20;  // above 6 · 2^-15 of kOne, by which a square may be too small
+  return {static_cast<std::uint32_t>(low * kOne) + kMargin, static_cast<std::uint32_t>(high * kOne) - kMargin};
+}
+
 std::uint32_t find_square_outside(Array<const Vec3> vectors, std::uint32_t begin, float low, float high) {
   CHECK_LE(begin, vectors.count);
-  const Float4 lows = Float4::splat(low), highs = Float4::splat(high);
   std::uint32_t i = begin;
+#if defined(POCKETRAY_HAS_NO_FPU)
+  const SquareRange range = range_within(low, high);
+  for (; vectors.count - i >= 4; i += 4)
+    for (std::uint32_t k = i; k < i + 4; ++k)
+      if (!is_surely_inside(vectors[k], range)) return i;
+#else
+  const Float4 lows = Float4::splat(low), highs = Float4::splat(high);
   for (; vectors.count - i >= 4; i += 4) {
     const float* const at[4] = {&vectors[i].x, &vectors[i + 1].x, &vectors[i + 2].x, &vectors[i + 3].x};
     Float4 v[3];
@@ -147,6 +173,7 @@ std::uint32_t find_square_outside(Array<const Vec3> vectors, std::uint32_t begin
     const Float4 square = v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
     if (bits((lows <= square) & (square <= highs)) != 15) break;
   }
+#endif
   return i;
 }
 

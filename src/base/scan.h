@@ -30,8 +30,16 @@ float least_magnitude(Array<const Vec3> points);
 // Bounds of all points; no coordinate may be NaN.
 Box bounds_of(Array<const Vec3> points);
 
-// Returns the first i from `begin` on, in steps of 4, where one of the vectors i to i + 3 has a square outside
-// [low, high] or there are fewer than four of them. NaN is outside.
+// Limits of squares in units of 2^-30, and whether a vector has a square well within; for CPUs without floating point.
+struct SquareRange {
+  std::uint32_t low, high;
+};
+SquareRange range_within(float low, float high);
+bool is_surely_inside(const Vec3& v, const SquareRange& range);
+
+// Returns the first i from `begin` on, in steps of 4, where one of the vectors i to i + 3 may have a square outside
+// [low, high], or there are fewer than four of them. NaN is outside. low ≥ 0.5, high ≤ 1.5; without an FPU, only
+// vectors without a coordinate beyond 1 and by 2^-10 within these limits are known to be inside.
 std::uint32_t find_square_outside(Array<const Vec3> vectors, std::uint32_t begin, float low, float high);
 
 }  // namespace pocketray

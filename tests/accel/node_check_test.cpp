@@ -8,6 +8,7 @@
 
 #include "accel/accel_world.h"
 #include "accel/bvh.h"
+#include "accel/fixed_area.h"
 
 using namespace pocketray;
 
@@ -86,7 +87,7 @@ TEST_CASE("node_check_passes_no_wrong_word") {
 // and after rounding, in leaves as if they were not.
 TEST_CASE("node_check_passes_no_degenerate_triangle") {
   Rng rng = make_rng(123);
-  int plain = 0, degenerate = 0;
+  int plain = 0, degenerate = 0, fixed = 0;
   for (int i = 0; i < 4000; ++i) {
     const float scale = std::ldexp(1.0f, static_cast<int>(next_u32(&rng) % 170) - 120);
     const Vec3 a = random_vec3(&rng, 1) * scale, along = random_vec3(&rng, next_u32(&rng) % 2 ? 1 : 1e-3f) * scale;
@@ -111,7 +112,10 @@ TEST_CASE("node_check_passes_no_degenerate_triangle") {
       } else {
         for (std::uint32_t& id : reinterpret_cast<CompactLeaf*>(leaf)->triangle) id = 0;
       }
-      if (is_degenerate(p[0], p[1], p[2])) {
+      const bool is_flat = is_degenerate(p[0], p[1], p[2]);
+      if (is_flat && surely_has_area(p[0], p[1], p[2])) FAIL_CHECK("in fixed point: triangle ", i);
+      fixed += surely_has_area(p[0], p[1], p[2]);
+      if (is_flat) {
         ++degenerate;
         if (tree.is_plain(0)) FAIL_CHECK(info->name, ": triangle ", i);
       } else {
@@ -121,6 +125,7 @@ TEST_CASE("node_check_passes_no_degenerate_triangle") {
   }
   CHECK(degenerate > 1000);
   CHECK(plain > 500);
+  CHECK(fixed > 500);
 }
 
 // Goal: vertices out of range and coordinates that are too large or not finite are found.

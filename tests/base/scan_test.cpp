@@ -116,6 +116,27 @@ TEST_CASE("scan_bounds_points") {
   }
 }
 
+// Goal: without an FPU, no vector outside is taken for one inside, and few inside are left undecided.
+TEST_CASE("scan_decides_squares_in_fixed_point") {
+  Rng rng = make_rng(504);
+  const SquareRange range = range_within(0.98f, 1.02f);
+  int decided = 0;
+  for (int i = 0; i < 100000; ++i) {
+    auto coordinate = [&] { return 2 * next_float(&rng) - 1; };
+    const float x = coordinate(), y = coordinate();
+    const Vec3 v = Vec3{x, y, coordinate()}, unit = normalize(v) * (0.97f + 0.06f * next_float(&rng));
+    const float square = dot(unit, unit);
+    const bool inside = is_surely_inside(unit, range);
+    if (inside && !(square >= 0.98f && square <= 1.02f)) FAIL_CHECK("square ", static_cast<double>(square));
+    decided += inside;
+  }
+  CHECK(decided > 25000);
+  CHECK(is_surely_inside({0, 0, 1}, range));
+  const float nan = std::nanf(""), inf = std::numeric_limits<float>::infinity();
+  for (const Vec3& bad : {Vec3{nan, 0, 1}, Vec3{0, inf, 0}, Vec3{0, 0, 1.2f}, Vec3{0, 0, 0}, Vec3{1e30f, 0, 0}})
+    CHECK(!is_surely_inside(bad, range));
+}
+
 // Goal: no vector outside is passed over. Method: a long, a short, a NaN and an infinite one at every place.
 TEST_CASE("scan_finds_squares_outside") {
   const std::uint32_t count = 23;
