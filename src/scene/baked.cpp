@@ -128,7 +128,7 @@ Status check_section(const Section& section, std::uint32_t kind, const char* nam
   return success();
 }
 
-Status check_header(const std::uint8_t* bytes, std::size_t byte_count, FileHeader* header) {
+Status check_header(const std::uint8_t* bytes, std::size_t byte_count, const ParallelLoop& loop, FileHeader* header) {
   if (reinterpret_cast<std::uintptr_t>(bytes) % kSectionAlignment != 0)
     return failure("must be aligned to 64 bytes in memory");
   if (byte_count < sizeof kMagic || std::memcmp(bytes, kMagic, sizeof kMagic) != 0)
@@ -141,7 +141,7 @@ Status check_header(const std::uint8_t* bytes, std::size_t byte_count, FileHeade
   if (header->byte_count != byte_count)
     return failure("%zu bytes long, it should be %llu: copy or bake it again", byte_count,
                    static_cast<unsigned long long>(header->byte_count));
-  if (baked_checksum(header->version, bytes, byte_count) != header->checksum)
+  if (baked_checksum(header->version, bytes, byte_count, loop) != header->checksum)
     return failure("damaged, its checksum does not match: copy or bake it again");
   const std::uint32_t section_count = section_count_of(header->version);
   if (header->section_count != section_count)
@@ -161,10 +161,11 @@ Section section_at(const std::uint8_t* bytes, std::uint32_t kind) {
 
 }  // namespace
 
-std::uint32_t baked_checksum(std::uint32_t version, const std::uint8_t* bytes, std::size_t byte_count) {
+std::uint32_t baked_checksum(std::uint32_t version, const std::uint8_t* bytes, std::size_t byte_count,
+                             const ParallelLoop& loop) {
   CHECK_LE(kChecksumBegin, byte_count);
   return version < kJoinedSumVersion ? crc(0, bytes + kChecksumBegin, byte_count - kChecksumBegin)
-                                     : joined_sum(bytes, kChecksumBegin, byte_count);
+                                     : joined_sum(bytes, kChecksumBegin, byte_count, loop);
 }
 
 std::size_t baked_size(const Scene& scene) {
@@ -205,11 +206,11 @@ void baked_write(const Scene& scene, std::uint8_t* bytes) {
   std::memcpy(bytes, &header, sizeof header);
 }
 
-Status baked_open(const std::uint8_t* bytes, std::size_t byte_count, Scene* scene) {
+Status baked_open(const std::uint8_t* bytes, std::size_t byte_count, Scene* scene, const ParallelLoop& loop) {
   CHECK(bytes != nullptr || byte_count == 0);
   CHECK(scene != nullptr);
   FileHeader header;
-  RETURN_IF_ERROR(check_header(bytes, byte_count, &header));
+  RETURN_IF_ERROR(check_header(bytes, byte_count, loop, &header));
   Scene opened;
   std::uint64_t offset = first_offset(header.section_count);
   Section info = section_at(bytes, 0);

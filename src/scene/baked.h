@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "base/parallel_loop.h"
 #include "base/status.h"
 #include "scene/scene.h"
 
@@ -20,7 +21,7 @@ void baked_write(const Scene& scene, std::uint8_t* bytes);
 
 // Makes `scene` a view of the file in `bytes` (aligned to 64). Checks magic, version, length and checksum, then every
 // count, offset, index and float; after that the scene can be trusted. Allocates nothing, copies nothing.
-Status baked_open(const std::uint8_t* bytes, std::size_t byte_count, Scene* scene);
+Status baked_open(const std::uint8_t* bytes, std::size_t byte_count, Scene* scene, const ParallelLoop& loop = {});
 
 // Applies the checks of baked_open() to any scene: indices in range, floats finite and below kCoordinateMax, nodes
 // after their parents, key times increasing. The message names the faulty element.

@@ -24,7 +24,8 @@ constexpr std::size_t kChecksumBegin = 16;
 constexpr std::uint32_t kJoinedSumVersion = 21;  // first to have joined_sum() as its checksum, not CRC-32
 
 // The checksum that a file of this version has in its header. `bytes` is aligned to 4.
-std::uint32_t baked_checksum(std::uint32_t version, const std::uint8_t* bytes, std::size_t byte_count);
+std::uint32_t baked_checksum(std::uint32_t version, const std::uint8_t* bytes, std::size_t byte_count,
+                             const ParallelLoop& loop = {});
 
 struct Section {
   std::uint32_t kind, element_bytes;

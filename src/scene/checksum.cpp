@@ -6,6 +6,10 @@
 
 #if defined(__ARM_NEON)
 #include <arm_neon.h>
+#elif defined(__x86_64__)
+#include <immintrin.h>
+
+#include "base/isa.h"
 #endif
 
 namespace pocketray {
@@ -53,6 +57,20 @@ void add_stripes(const std::uint8_t* bytes, std::size_t stripe_count, std::uint3
 }
 #endif
 
+#if defined(__x86_64__)
+__attribute__((target("avx2"))) void add_stripes_avx2(const std::uint8_t* bytes, std::size_t stripe_count,
+                                                      std::uint32_t (&lanes)[8]) {
+  const __m256i odd = _mm256_set1_epi32(static_cast<int>(kOdd));
+  __m256i h = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(lanes));
+  for (; stripe_count > 0; --stripe_count, bytes += kStripeBytes) {
+    const __m256i turned = _mm256_or_si256(_mm256_slli_epi32(h, kTurn), _mm256_srli_epi32(h, 32 - kTurn));
+    const __m256i words = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(bytes));
+    h = _mm256_mullo_epi32(_mm256_add_epi32(words, turned), odd);
+  }
+  _mm256_storeu_si256(reinterpret_cast<__m256i*>(lanes), h);
+}
+#endif
+
 }  // namespace
 
 std::uint32_t block_sum(const std::uint8_t* bytes, std::size_t byte_count) {
@@ -60,7 +78,12 @@ std::uint32_t block_sum(const std::uint8_t* bytes, std::size_t byte_count) {
   CHECK_EQ(reinterpret_cast<std::uintptr_t>(bytes) % 4, 0u);
   std::uint32_t lanes[8] = {1, 2, 3, 4, 5, 6, 7, 8};
   const std::size_t stripe_count = byte_count / kStripeBytes, rest = byte_count % kStripeBytes;
-  add_stripes(bytes, stripe_count, lanes);
+#if defined(__x86_64__)
+  if (active_isa() != Isa::kBaseline)
+    add_stripes_avx2(bytes, stripe_count, lanes);
+  else
+#endif
+    add_stripes(bytes, stripe_count, lanes);
   if (rest > 0) {
     alignas(16) std::uint8_t last[kStripeBytes] = {};
     std::memcpy(last, bytes + stripe_count * kStripeBytes, rest);
@@ -76,14 +99,22 @@ std::uint32_t join_sums(std::uint32_t before, std::uint32_t sum) {
   return h ^ h >> 15;
 }
 
-std::uint32_t joined_sum(const std::uint8_t* bytes, std::size_t begin, std::size_t byte_count) {
+std::uint32_t joined_sum(const std::uint8_t* bytes, std::size_t begin, std::size_t byte_count,
+                         const ParallelLoop& loop) {
   CHECK_LE(begin, byte_count);
   CHECK_LT(begin, kChecksumBlockBytes);
-  std::uint32_t sum = 0;
-  for (std::size_t end; begin < byte_count; begin = end) {
-    end = begin / kChecksumBlockBytes * kChecksumBlockBytes + kChecksumBlockBytes;
-    if (end > byte_count || end < begin) end = byte_count;
-    sum = join_sums(sum, block_sum(bytes + begin, end - begin));
+  constexpr std::size_t kGroupSize = 256;  // chosen: blocks whose sums are kept
+  std::uint32_t sum = 0, sums[kGroupSize];
+  const std::size_t block_count = begin < byte_count ? (byte_count - 1) / kChecksumBlockBytes + 1 : 0;
+  for (std::size_t group = 0; group < block_count; group += kGroupSize) {
+    auto sum_up = [&](std::uint32_t i) {
+      const std::size_t at = (group + i) * kChecksumBlockBytes, first = at < begin ? begin : at;
+      const std::size_t left = byte_count - at, end = at + (left < kChecksumBlockBytes ? left : kChecksumBlockBytes);
+      sums[i] = block_sum(bytes + first, end - first);
+    };
+    const std::size_t count = block_count - group < kGroupSize ? block_count - group : kGroupSize;
+    run_loop(loop, static_cast<std::uint32_t>(count), sum_up);
+    for (std::size_t i = 0; i < count; ++i) sum = join_sums(sum, sums[i]);
   }
   return sum;
 }

@@ -3,6 +3,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "base/parallel_loop.h"
+
 namespace pocketray {
 
 // A file consists of blocks of this many bytes from its start, and a rest. Each has a sum of its own, so that blocks
@@ -19,6 +21,7 @@ std::uint32_t block_sum(const std::uint8_t* bytes, std::size_t byte_count);
 std::uint32_t join_sums(std::uint32_t before, std::uint32_t sum);
 
 // The joined sums of the blocks of bytes[begin .. byte_count); `begin` lies in the first block.
-std::uint32_t joined_sum(const std::uint8_t* bytes, std::size_t begin, std::size_t byte_count);
+std::uint32_t joined_sum(const std::uint8_t* bytes, std::size_t begin, std::size_t byte_count,
+                         const ParallelLoop& loop = {});
 
 }  // namespace pocketray

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "base/isa.h"
 #include "base/rng.h"
 #include "scene/baked_file.h"
 #include "scene/baked_layout.h"
@@ -49,10 +50,13 @@ struct Definition {
 // Goal: block_sum() and join_sums() are what files of version 21 hold, on every CPU. Method: the definition, byte by
 // byte, for every length up to a few stripes; and known sums.
 TEST_CASE("checksum_of_a_block_is_as_defined") {
-  for (std::size_t count = 0; count <= 200; ++count) {
-    CAPTURE(count);
-    const BakedFile bytes = random_bytes(count, 400 + count);
-    CHECK(block_sum(bytes.data(), count) == Definition::block(bytes.data(), count));
+  for (int isa = 0; isa <= static_cast<int>(best_isa()); ++isa) {
+    select_isa(static_cast<Isa>(isa));
+    for (std::size_t count = 0; count <= 200; ++count) {
+      CAPTURE(count);
+      const BakedFile bytes = random_bytes(count, 400 + count);
+      CHECK(block_sum(bytes.data(), count) == Definition::block(bytes.data(), count));
+    }
   }
   std::uint8_t counting[100];
   for (std::uint32_t i = 0; i < 100; ++i) counting[i] = static_cast<std::uint8_t>(i);
@@ -78,6 +82,20 @@ TEST_CASE("checksum_of_a_file_joins_blocks_from_its_start") {
     CHECK(joined_sum(bytes.data(), 16, count) == expected);
     CHECK(baked_checksum(kJoinedSumVersion, bytes.data(), count) == expected);
   }
+}
+
+// Goal: threads do not change the sum. Method: a loop that takes its items backwards; more blocks than a group has.
+TEST_CASE("checksum_does_not_depend_on_the_order_of_blocks") {
+  const std::size_t count = 300 * kChecksumBlockBytes - 4;
+  const BakedFile bytes = random_bytes(count, 404);
+  int taken = 0;
+  const ParallelLoop backwards = {
+      [](void* threads, std::uint32_t item_count, void (*take)(void* context, std::uint32_t item), void* context) {
+        while (item_count-- > 0) take(context, item_count), ++*static_cast<int*>(threads);
+      },
+      &taken};
+  CHECK(joined_sum(bytes.data(), 16, count, backwards) == joined_sum(bytes.data(), 16, count));
+  CHECK(taken == 300);
 }
 
 // Goal: damage of the kinds that disks and links do changes the sum. Method: a word replaced, two bits flipped in words
