@@ -5,6 +5,7 @@
 
 #include "accel/ray.h"
 #include "base/arena.h"
+#include "base/parallel_loop.h"
 #include "base/status.h"
 #include "scene/scene.h"
 
@@ -62,7 +63,7 @@ struct AccelInfo : AccelTraversal {
   // Adapts writable data to moved positions with unchanged topology. Null: build() again for every frame.
   void (*refit)(Accel* accel, Array<std::uint8_t> data);
   // Adopts baked data, aligned to 64, after checking every index, bound and vertex in it against the geometry.
-  Status (*adopt)(Accel* accel, Array<const std::uint8_t> data);
+  Status (*adopt)(Accel* accel, Array<const std::uint8_t> data, const ParallelLoop& loop);
   // Largest value of a triangle that rays can hit; 0 if none is positive.
   float (*largest)(const Accel& accel, const TriangleQuery& query);
   bool packets_by_rays = false;  // packets are traced ray by ray: neighbours share no work

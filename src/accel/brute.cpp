@@ -26,7 +26,7 @@ void brute_build(Accel* accel, Arena*, Arena*) {
 }
 void brute_refit(Accel* accel, Array<std::uint8_t>) { update_bounds(accel); }
 
-Status brute_adopt(Accel* accel, Array<const std::uint8_t> data) {
+Status brute_adopt(Accel* accel, Array<const std::uint8_t> data, const ParallelLoop&) {
   if (!data.empty()) return failure("baked data of %u bytes where brute force keeps none", data.count);
   brute_build(accel, nullptr, nullptr);
   return success();

@@ -35,7 +35,9 @@ struct Hierarchy {
     bvh_settle(kLeaves, accel, data, moving);
   }
   static void refit(Accel* accel, Array<std::uint8_t> data) { bvh_refit(kLeaves, accel, data); }
-  static Status adopt(Accel* accel, Array<const std::uint8_t> data) { return bvh_adopt(kLeaves, accel, data); }
+  static Status adopt(Accel* accel, Array<const std::uint8_t> data, const ParallelLoop& loop) {
+    return bvh_adopt(kLeaves, accel, data, loop);
+  }
   static void closest(const Accel& accel, const Ray& ray, const HitFilter* filter, Hit* hit, TraceStats* stats) {
     kernels().closest(accel, ray, filter, hit, stats);
   }

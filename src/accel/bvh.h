@@ -119,7 +119,7 @@ std::size_t bvh_scratch_need(std::uint32_t triangle_count);
 void bvh_build(const LeafKind& kind, Accel* accel, Arena* keep, Arena* scratch);
 void bvh_settle(const LeafKind& kind, Accel* accel, Array<std::uint8_t> data, Array<const MovingMesh> moving);
 void bvh_refit(const LeafKind& kind, Accel* accel, Array<std::uint8_t> data);
-Status bvh_adopt(const LeafKind& kind, Accel* accel, Array<const std::uint8_t> data);
+Status bvh_adopt(const LeafKind& kind, Accel* accel, Array<const std::uint8_t> data, const ParallelLoop& loop);
 float bvh_largest(const LeafKind& kind, const Accel& accel, const TriangleQuery& query);
 
 }  // namespace pocketray

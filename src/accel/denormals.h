@@ -16,6 +16,7 @@
 
 #include "accel/accel.h"
 #include "base/isa.h"
+#include "base/scan.h"
 
 namespace pocketray {
 
@@ -25,13 +26,7 @@ constexpr float kCoordinateMin = 0x1p-62f;
 // since it is not needed.
 inline float least_coordinate(Array<const Vec3> positions) {
 #if defined(POCKETRAY_HAVE_NEON32)
-  float least = std::numeric_limits<float>::infinity();
-  for (const Vec3& p : positions)
-    for (int axis = 0; axis < 3; ++axis) {
-      float magnitude = std::fabs(p[axis]);
-      if (magnitude < least && magnitude > 0) least = magnitude;
-    }
-  return least;
+  return least_magnitude(positions);
 #else
   (void)positions;
   return 0;
@@ -39,7 +34,7 @@ inline float least_coordinate(Array<const Vec3> positions) {
 }
 
 // Magnitude of a float as an integer, which sorts like it. Less one, 0 becomes the greatest of all.
-inline std::uint32_t magnitude_bits(float x) {
+inline std::uint32_t shifted_magnitude(float x) {
   std::uint32_t word;
   std::memcpy(&word, &x, sizeof word);
   return word << 1;
@@ -49,14 +44,13 @@ inline std::uint32_t magnitude_bits(float x) {
 class DenormalGuard {
  public:
   std::uint32_t coordinate = ~0u, end = ~0u;  // least magnitude of an origin's coordinate, least positive end; less one
-  std::uint32_t span = 0,
-                reach = 0;  // greatest quotient of a direction's components, and component above kDirectionMin
+  std::uint32_t span = 0, reach = 0;  // most: quotient of a direction's components, component above kDirectionMin
 
   void add_origin(const Vec3& origin) {
-    for (int axis = 0; axis < 3; ++axis) keep_least(magnitude_bits(origin[axis]) - 1, &coordinate);
+    for (int axis = 0; axis < 3; ++axis) keep_least(shifted_magnitude(origin[axis]) - 1, &coordinate);
   }
   void add_direction(float x, float y, float z) {
-    std::uint32_t a = magnitude_bits(x), b = magnitude_bits(y), c = magnitude_bits(z);
+    std::uint32_t a = shifted_magnitude(x), b = shifted_magnitude(y), c = shifted_magnitude(z);
     std::uint32_t most = a > b ? a : b, least = a - 1 < b - 1 ? a - 1 : b - 1;
     if (c > most) most = c;
     if (c - 1 < least) least = c - 1;

@@ -19,7 +19,7 @@ void build(Accel* accel, Arena* keep, Arena* scratch) {
   grid_build(accel, keep, scratch, pool_words_for(accel->triangles.count));
 }
 
-Status adopt(Accel*, Array<const std::uint8_t>) {
+Status adopt(Accel*, Array<const std::uint8_t>, const ParallelLoop&) {
   return failure("accelerator: a grid changes while it is used, so it is not read from a file; bake another");
 }
 

@@ -31,7 +31,8 @@ struct Float4 {
 };
 inline void store(float* p, Float4 a) { vst1q_f32(static_cast<float*>(__builtin_assume_aligned(p, 16)), a.v); }
 inline void load_points(const float* const (&p)[4], Float4 (&rows)[3]) {
-  float32x4x3_t r = {{vdupq_n_f32(0), vdupq_n_f32(0), vdupq_n_f32(0)}};
+  static const float kZeros[12] = {};
+  float32x4x3_t r = vld3q_f32(kZeros);  // GCC 12 would set it up in memory
   r = vld3q_lane_f32(p[0], r, 0), r = vld3q_lane_f32(p[1], r, 1);
   r = vld3q_lane_f32(p[2], r, 2), r = vld3q_lane_f32(p[3], r, 3);
   for (int axis = 0; axis < 3; ++axis) rows[axis].v = r.val[axis];

@@ -115,10 +115,11 @@ Status adopt_or_build(Renderer* renderer) {
                             renderer->accel.built.data.count};  // lies in our arena
     return success();
   }
-  if (!moves(*renderer)) return renderer->accel.info->adopt(&renderer->accel.built, renderer->scene.accel);
+  const ParallelLoop loop = loop_over(renderer->workers);
+  if (!moves(*renderer)) return renderer->accel.info->adopt(&renderer->accel.built, renderer->scene.accel, loop);
   renderer->accel.data = arena_array<std::uint8_t>(&renderer->memory.persistent, renderer->scene.accel.count);
   __builtin_memcpy(renderer->accel.data.data, renderer->scene.accel.data, renderer->scene.accel.count);
-  return renderer->accel.info->adopt(&renderer->accel.built, renderer->accel.data);
+  return renderer->accel.info->adopt(&renderer->accel.built, renderer->accel.data, loop);
 }
 
 Status plan_with(Renderer* renderer, const AccelInfo& accel, const SceneStorage& storage, const OutputNeed& output) {

@@ -134,4 +134,24 @@ std::uint32_t share_items(Workers* workers, std::uint32_t begin, std::uint32_t e
   return next < end ? next : end;
 }
 
+ParallelLoop loop_over(Workers* workers) {
+  if (!workers) return {};
+  struct Loop {
+    void (*take)(void* context, std::uint32_t item);
+    void* context;
+  };
+  auto run = [](void* threads, std::uint32_t item_count, void (*take)(void* context, std::uint32_t item),
+                void* context) {
+    CHECK(take != nullptr);
+    Loop loop = {take, context};
+    auto take_item = [](void* of, std::uint32_t, std::uint32_t item) {
+      const Loop* l = static_cast<Loop*>(of);
+      l->take(l->context, item);
+      return true;
+    };
+    share_items(static_cast<Workers*>(threads), 0, item_count, take_item, &loop);
+  };
+  return {run, workers};
+}
+
 }  // namespace pocketray

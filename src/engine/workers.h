@@ -2,6 +2,8 @@
 #pragma once
 #include <cstdint>
 
+#include "base/parallel_loop.h"
+
 namespace pocketray {
 
 struct Workers;
@@ -20,6 +22,9 @@ void run_with(Workers* workers, void (*work)(void* context, std::uint32_t thread
 // done, or every thread has left because take() returned false: the first item that none took.
 std::uint32_t share_items(Workers* workers, std::uint32_t begin, std::uint32_t end,
                           bool (*take)(void* context, std::uint32_t thread, std::uint32_t item), void* context);
+
+// A loop over the threads of `workers`, or without any the caller's.
+ParallelLoop loop_over(Workers* workers);
 
 std::uint64_t clock_ns();  // monotonic
 

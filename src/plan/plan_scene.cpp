@@ -4,12 +4,58 @@
 
 #include "accel/triangle.h"
 #include "base/check.h"
+#include "base/scan.h"
 #include "plan/interior.h"
 #include "plan/room.h"
+#include "scene/triangle_scan.h"
 
 namespace pocketray {
 
+// Returns whether a triangle uses the vertex. Looks first where it would be if vertices came in order of first use.
+static bool is_used(const Scene& scene, std::uint32_t vertex) {
+  CHECK_LT(vertex, scene.positions.count);
+  constexpr std::uint32_t kBefore = 64;
+  const std::uint64_t likely = std::uint64_t(vertex) * scene.triangles.count / scene.positions.count;
+  const std::uint32_t begin = likely > kBefore ? static_cast<std::uint32_t>(likely) - kBefore : 0;
+  return any_uses_vertex({scene.triangles.data + begin, scene.triangles.count - begin}, vertex) ||
+         any_uses_vertex({scene.triangles.data, begin}, vertex);
+}
+
+// Bounds of all vertices, and a vertex on each side: those of low x, y and z, then of high.
+struct VertexBounds {
+  Box box;
+  std::uint32_t on_side[6];
+};
+
+static VertexBounds vertex_bounds(const Scene& scene) {
+  constexpr std::uint32_t kPartSize = 256;  // chosen: vertices among which to search for those on a side
+  const Array<const Vec3> positions = scene.positions;
+  auto part_at = [&](std::uint32_t begin) {
+    return Array<const Vec3>{positions.data + begin, std::min(kPartSize, positions.count - begin)};
+  };
+  VertexBounds bounds = {empty_box(), {}};
+  for (std::uint32_t begin = 0; begin < positions.count; begin += kPartSize) {
+    const Box part = bounds_of(part_at(begin)), all = bounds.box;
+    for (int axis = 0; axis < 3; ++axis) {
+      if (part.low[axis] < all.low[axis]) bounds.on_side[axis] = begin;
+      if (part.high[axis] > all.high[axis]) bounds.on_side[3 + axis] = begin;
+    }
+    bounds.box = merge(all, part);
+  }
+  for (int side = 0; side < 6; ++side) {
+    const float plane = side < 3 ? bounds.box.low[side] : bounds.box.high[side - 3];
+    std::uint32_t* vertex = &bounds.on_side[side];
+    const std::uint32_t end = *vertex + part_at(*vertex).count;
+    while (*vertex + 1 < end && positions[*vertex][side % 3] != plane) ++*vertex;
+  }
+  return bounds;
+}
+
 Box scene_bounds(const Scene& scene) {
+  if (scene.triangles.empty()) return empty_box();
+  const VertexBounds all = vertex_bounds(scene);
+  if (std::all_of(all.on_side, all.on_side + 6, [&](std::uint32_t vertex) { return is_used(scene, vertex); }))
+    return all.box;
   Box box = empty_box();
   for (const Triangle& t : scene.triangles)
     for (std::uint32_t v : t.vertices()) box = merge(box, scene.positions[v]);
@@ -181,9 +227,11 @@ Vec3 default_background() { return {0.045f, 0.05f, 0.06f}; }
 
 bool has_light(const Scene& scene) {
   if (scene.lights.count || !is_zero(scene.info.ambient) || scene.environment_info.count) return true;
+  auto needs_no_light = [](const Material& m) { return m.unlit != 0 || !is_zero(m.emission); };
+  if (std::none_of(scene.materials.begin(), scene.materials.end(), needs_no_light)) return scene.triangles.empty();
   bool needs_light = false;
-  for (const Triangle& t : scene.triangles) {  // unused materials emit no light
-    const Material& m = scene.materials[t.material()];
+  for (std::uint32_t i = 0; i < scene.triangles.count; i = next_material(scene.triangles, i)) {
+    const Material& m = scene.materials[scene.triangles[i].material()];  // unused ones emit no light
     if (!is_zero(m.emission)) return true;
     needs_light |= !m.unlit;
   }

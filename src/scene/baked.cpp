@@ -6,6 +6,7 @@
 
 #include "base/check.h"
 #include "scene/baked_layout.h"
+#include "scene/checksum.h"
 
 namespace pocketray {
 namespace {
@@ -108,11 +109,6 @@ std::uint32_t crc(std::uint32_t start, const void* bytes, std::size_t byte_count
   return static_cast<std::uint32_t>(value);
 }
 
-std::uint32_t file_checksum(const std::uint8_t* bytes, std::size_t byte_count) {
-  CHECK_LE(kChecksumBegin, byte_count);
-  return crc(0, bytes + kChecksumBegin, byte_count - kChecksumBegin);
-}
-
 // The counts alone determine where every section lies: sections come in order of kind, each at the next multiple of 64.
 // Any other table is refused, which rules out overlaps, gaps, duplicates and unknown kinds at once.
 Status check_section(const Section& section, std::uint32_t kind, const char* name, std::uint32_t element_bytes,
@@ -132,7 +128,7 @@ Status check_section(const Section& section, std::uint32_t kind, const char* nam
   return success();
 }
 
-Status check_header(const std::uint8_t* bytes, std::size_t byte_count, FileHeader* header) {
+Status check_header(const std::uint8_t* bytes, std::size_t byte_count, const ParallelLoop& loop, FileHeader* header) {
   if (reinterpret_cast<std::uintptr_t>(bytes) % kSectionAlignment != 0)
     return failure("must be aligned to 64 bytes in memory");
   if (byte_count < sizeof kMagic || std::memcmp(bytes, kMagic, sizeof kMagic) != 0)
@@ -145,7 +141,7 @@ Status check_header(const std::uint8_t* bytes, std::size_t byte_count, FileHeade
   if (header->byte_count != byte_count)
     return failure("%zu bytes long, it should be %llu: copy or bake it again", byte_count,
                    static_cast<unsigned long long>(header->byte_count));
-  if (file_checksum(bytes, byte_count) != header->checksum)
+  if (baked_checksum(header->version, bytes, byte_count, loop) != header->checksum)
     return failure("damaged, its checksum does not match: copy or bake it again");
   const std::uint32_t section_count = section_count_of(header->version);
   if (header->section_count != section_count)
@@ -164,6 +160,13 @@ Section section_at(const std::uint8_t* bytes, std::uint32_t kind) {
 }
 
 }  // namespace
+
+std::uint32_t baked_checksum(std::uint32_t version, const std::uint8_t* bytes, std::size_t byte_count,
+                             const ParallelLoop& loop) {
+  CHECK_LE(kChecksumBegin, byte_count);
+  return version < kJoinedSumVersion ? crc(0, bytes + kChecksumBegin, byte_count - kChecksumBegin)
+                                     : joined_sum(bytes, kChecksumBegin, byte_count, loop);
+}
 
 std::size_t baked_size(const Scene& scene) {
   std::uint64_t size = aligned(first_offset(kSectionCount) + sizeof(SceneInfo));
@@ -199,15 +202,15 @@ void baked_write(const Scene& scene, std::uint8_t* bytes) {
   header.byte_count = size;
   header.section_count = kSectionCount;
   std::memcpy(bytes, &header, sizeof header);
-  header.checksum = file_checksum(bytes, size);
+  header.checksum = baked_checksum(header.version, bytes, size);
   std::memcpy(bytes, &header, sizeof header);
 }
 
-Status baked_open(const std::uint8_t* bytes, std::size_t byte_count, Scene* scene) {
+Status baked_open(const std::uint8_t* bytes, std::size_t byte_count, Scene* scene, const ParallelLoop& loop) {
   CHECK(bytes != nullptr || byte_count == 0);
   CHECK(scene != nullptr);
   FileHeader header;
-  RETURN_IF_ERROR(check_header(bytes, byte_count, &header));
+  RETURN_IF_ERROR(check_header(bytes, byte_count, loop, &header));
   Scene opened;
   std::uint64_t offset = first_offset(header.section_count);
   Section info = section_at(bytes, 0);

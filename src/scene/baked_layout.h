@@ -14,13 +14,18 @@ inline constexpr std::uint8_t kMagic[8] = {0x89, 'P',  'R',  'A',
 struct FileHeader {
   std::uint8_t magic[8];
   std::uint32_t version;
-  std::uint32_t checksum;  // CRC-32 of everything after this field
+  std::uint32_t checksum;  // baked_checksum() of everything after this field
   std::uint64_t byte_count;
   std::uint32_t section_count;
   std::uint32_t reserved[9];  // zero
 };
 static_assert(sizeof(FileHeader) == 64, "no padding");
 constexpr std::size_t kChecksumBegin = 16;
+constexpr std::uint32_t kJoinedSumVersion = 21;  // first to have joined_sum() as its checksum, not CRC-32
+
+// The checksum that a file of this version has in its header. `bytes` is aligned to 4.
+std::uint32_t baked_checksum(std::uint32_t version, const std::uint8_t* bytes, std::size_t byte_count,
+                             const ParallelLoop& loop = {});
 
 struct Section {
   std::uint32_t kind, element_bytes;

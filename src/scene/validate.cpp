@@ -1,10 +1,13 @@
 // Validates static content: geometry, materials, textures, lights, cameras.
+#include <algorithm>
 #include <cstring>
 
 #include "base/check.h"
 #include "base/limit_list.h"
+#include "base/scan.h"
 #include "scene/baked.h"
 #include "scene/texel_blocks.h"
+#include "scene/triangle_scan.h"
 #include "scene/validate_checks.h"
 
 namespace pocketray {
@@ -194,11 +197,29 @@ Status validate_framings(const Scene& scene) {
 
 }  // namespace
 
+bool are_coordinates(const void* values, std::size_t count) {
+  constexpr std::int32_t kMagnitude = 0x7FFFFFFF;
+  return static_cast<std::uint32_t>(largest_word(values, count, kMagnitude)) <= float_bits(kCoordinateMax);
+}
+
 Status check_normals(const char* array, Array<const Vec3> normals) {
-  for (std::uint32_t i = 0; i < normals.count; ++i)
-    if (!is_unit(normals[i]) && !is_zero(normals[i]))
-      return failure("%s[%u] is neither of length 1 nor zero", array, i);
+  // Quickly up to four of which one is zero or at fault, and then these one by one.
+  for (std::uint32_t i = 0; (i = find_square_outside(normals, i, kUnitSquareMin, kUnitSquareMax)) < normals.count;)
+    for (std::uint32_t end = i + std::min(4u, normals.count - i); i < end; ++i)
+      if (!is_unit(normals[i]) && !is_zero(normals[i]))
+        return failure("%s[%u] is neither of length 1 nor zero", array, i);
   return success();
+}
+
+// Returns true only if all triangles have vertices and materials of the scene.
+static bool has_only_sound_triangles(const Scene& scene) {
+  const Array<const Triangle> triangles = scene.triangles;
+  if (triangles.empty()) return true;
+  if (largest_vertex(triangles) >= scene.positions.count) return false;
+  if (material_bound(triangles) < scene.materials.count) return true;
+  for (std::uint32_t i = 0; i < triangles.count; i = next_material(triangles, i))
+    if (triangles[i].material() >= scene.materials.count) return false;
+  return true;
 }
 
 Status validate_geometry(const Scene& scene) {
@@ -206,6 +227,7 @@ Status validate_geometry(const Scene& scene) {
   RETURN_IF_ERROR(check_normals("normals", scene.normals));
   RETURN_IF_ERROR(check_coordinates("uvs", scene.uvs));
   RETURN_IF_ERROR(check_coordinates("second_uvs", scene.second_uvs));
+  if (has_only_sound_triangles(scene)) return success();
   std::uint32_t vertex_count = scene.positions.count, material_count = scene.materials.count;
   for (std::uint32_t i = 0; i < scene.triangles.count; ++i) {
     const Triangle& t = scene.triangles[i];

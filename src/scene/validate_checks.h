@@ -23,10 +23,11 @@ inline bool is_coordinate(const Transform& t) {
 }
 
 // True if unit to within 1 %, as normals and directions must be. NaN fails.
+constexpr float kUnitSquareMin = 0.98f, kUnitSquareMax = 1.02f;
 inline bool is_unit(const Vec3& n) {
   if (!is_coordinate(n)) return false;
   float square = dot(n, n);
-  return square >= 0.98f && square <= 1.02f;
+  return square >= kUnitSquareMin && square <= kUnitSquareMax;
 }
 
 // True if [begin, begin + count) lies in [0, total).
@@ -49,8 +50,12 @@ Status check_fields(const char* array, std::uint32_t index, const FieldRange (&f
   return success();
 }
 
+// Returns whether is_coordinate() holds for all these floats.
+bool are_coordinates(const void* values, std::size_t count);
+
 template <class T>
 Status check_coordinates(const char* array, Array<const T> values) {
+  if (are_coordinates(values.data, values.bytes() / sizeof(float))) return success();
   for (std::uint32_t i = 0; i < values.count; ++i)
     if (!is_coordinate(values[i]))
       return failure("%s[%u] is not a number or beyond %g: scale the model down", array, i,

@@ -10,6 +10,7 @@
 #include "base/check.h"
 #include "platform/file.h"
 #include "scene/baked_layout.h"
+#include "scene/checksum.h"
 #include "scene/texel_blocks.h"
 #include "scene/texture_side.h"
 
@@ -55,17 +56,25 @@ std::uint32_t place_of(std::uint32_t word, const std::vector<Run>& runs) {
   return before;
 }
 
-// Hands the source's bytes on and sums them up.
+// Hands the source's bytes on. Once some are to be left out, sums them up: only a whole file can be summed up later.
 class Intake {
  public:
-  explicit Intake(const ByteSource& source) : source_(source), part_(kPartBytes) {}
+  explicit Intake(const ByteSource& source) : source_(source) {}
 
   std::uint64_t left() const { return source_.byte_count - come_; }
   Status read(std::uint8_t* bytes, std::uint64_t count) {
     CHECK_LE(count, left());
     RETURN_IF_ERROR(source_.read(bytes, static_cast<std::size_t>(count)));
-    sum_up(bytes, static_cast<std::size_t>(count));
+    come_ += count;
+    if (!part_.empty()) sum_up(bytes, static_cast<std::size_t>(count));
     return success();
+  }
+  // `bytes` are all those read so far, the header and more.
+  void begin_sums(std::uint32_t version, const std::uint8_t* bytes) {
+    CHECK(part_.empty());
+    is_joined_ = version >= kJoinedSumVersion;
+    part_.resize(kPartBytes);
+    sum_up(bytes, static_cast<std::size_t>(come_));
   }
   Status skip(std::uint64_t count) {
     std::uint8_t bytes[4096];
@@ -75,31 +84,37 @@ class Intake {
     }
     return success();
   }
-  std::uint32_t checksum() const { return static_cast<std::uint32_t>(checksum_); }
-  ContentHash hash() {
-    hash_part(&hasher_, part_.data(), part_count_);
-    part_count_ = 0;
-    return hash_end(hasher_);
+  void end_sums(std::uint32_t* checksum, ContentHash* hash) {
+    take_part();
+    *checksum = checksum_, *hash = hash_end(hasher_);
   }
 
  private:
-  static constexpr std::size_t kPartBytes = 1u << 16;  // a multiple of 16, as hash_part() needs it
+  static constexpr std::size_t kPartBytes = kChecksumBlockBytes;  // a multiple of 16, as hash_part() needs it
 
   void sum_up(const std::uint8_t* bytes, std::size_t count) {
-    const std::size_t before = come_ < kChecksumBegin ? std::min<std::size_t>(count, kChecksumBegin - come_) : 0;
-    checksum_ = crc32_z(checksum_, bytes + before, count - before);
-    come_ += count;
     for (std::size_t step; count > 0; bytes += step, count -= step) {
       step = std::min(count, kPartBytes - part_count_);
       std::memcpy(part_.data() + part_count_, bytes, step);
       part_count_ += step;
-      if (part_count_ == kPartBytes) hash_part(&hasher_, part_.data(), std::exchange(part_count_, 0));
+      if (part_count_ == kPartBytes) take_part();
     }
+  }
+  void take_part() {
+    if (part_count_ == 0) return;
+    const std::size_t begin = hasher_.byte_count == 0 ? kChecksumBegin : 0;
+    CHECK_LE(begin, part_count_);
+    const std::uint8_t* bytes = part_.data() + begin;
+    const std::size_t count = part_count_ - begin;
+    checksum_ = is_joined_ ? join_sums(checksum_, block_sum(bytes, count))
+                           : static_cast<std::uint32_t>(crc32_z(checksum_, bytes, count));
+    hash_part(&hasher_, part_.data(), std::exchange(part_count_, 0));
   }
 
   const ByteSource& source_;
   std::uint64_t come_ = 0;
-  uLong checksum_ = 0;
+  bool is_joined_ = true;  // as baked_checksum()
+  std::uint32_t checksum_ = 0;
   ContentHasher hasher_;
   std::vector<std::uint8_t> part_;
   std::size_t part_count_ = 0;
@@ -199,8 +214,7 @@ void restate(const std::vector<Run>& runs, std::uint32_t side_max, std::uint64_t
   }
   header.byte_count = byte_count;
   std::memcpy(bytes, &header, sizeof header);
-  header.checksum = static_cast<std::uint32_t>(
-      crc32_z(0, bytes + kChecksumBegin, static_cast<std::size_t>(byte_count) - kChecksumBegin));
+  header.checksum = baked_checksum(header.version, bytes, static_cast<std::size_t>(byte_count));
   header.checksum ^= is_damaged;
   std::memcpy(bytes, &header, sizeof header);
 }
@@ -212,6 +226,7 @@ Status read_without(const std::vector<Run>& runs, std::uint32_t side_max, std::u
   CHECK_EQ(f->read_count, texels.offset);
   FileHeader header;
   std::memcpy(&header, f->bytes, sizeof header);
+  f->intake.begin_sums(header.version, f->bytes);
   std::uint8_t* to = f->bytes + texels.offset;
   std::uint32_t word = 0;
   for (const Run& run : runs) {
@@ -224,9 +239,11 @@ Status read_without(const std::vector<Run>& runs, std::uint32_t side_max, std::u
   std::memset(to, 0, static_cast<std::size_t>(aligned(place) - place));
   CHECK_EQ(aligned(place) + f->intake.left(), kept_bytes);
   RETURN_IF_ERROR(f->intake.read(f->bytes + aligned(place), f->intake.left()));
-  restate(runs, side_max, kept_bytes, f->intake.checksum() != header.checksum, f->bytes);
+  std::uint32_t checksum;
+  f->intake.end_sums(&checksum, &file->whole);
+  restate(runs, side_max, kept_bytes, checksum != header.checksum, f->bytes);
   file->bytes = f->bytes, file->byte_count = static_cast<std::size_t>(kept_bytes);
-  file->is_whole = false, file->whole = f->intake.hash();
+  file->is_whole = false;
   return success();
 }
 

@@ -1,5 +1,6 @@
 #include <doctest/doctest.h>
 
+#include <cstdlib>
 #include <cstring>
 
 #include "accel/accel_world.h"
@@ -24,10 +25,10 @@ Bytes copy_of(const World& world, std::uint32_t count) {
 }
 
 // Whether the bytes are adopted; `world` then uses them as long as they live.
-bool adopt(World* world, const Bytes& bytes) { return world->info->adopt(&world->accel, bytes.data).ok; }
+bool adopt(World* world, const Bytes& bytes) { return world->info->adopt(&world->accel, bytes.data, {}).ok; }
 bool refuses(const World& world, const Bytes& bytes) {
   Accel accel = world.accel;
-  return !world.info->adopt(&accel, bytes.data).ok;
+  return !world.info->adopt(&accel, bytes.data, {}).ok;
 }
 
 const AccelInfo* const kBaked[] = {&kBvhAccel, &kCompactAccel};
@@ -78,6 +79,32 @@ TEST_CASE("bvh_refuses_every_flipped_byte_or_traces_it_safely") {
       }
     INFO(info->name);
     CHECK(accepted <= 8);
+  }
+}
+
+// Goal: the fault that is reported does not depend on threads. Method: a tree of several parts with two damaged nodes,
+// checked forwards and backwards.
+TEST_CASE("bvh_reports_the_first_damaged_node") {
+  const ParallelLoop backwards = {
+      [](void*, std::uint32_t item_count, void (*take)(void* context, std::uint32_t item), void* context) {
+        while (item_count-- > 0) take(context, item_count);
+      },
+      nullptr};
+  auto world = make_world(soup("", 40000, 1, 0.01f, 117), &kBvhAccel);
+  Bytes bytes = copy_of(*world, world->accel.data.count);
+  BvhWritableView bvh(bytes.data.data);
+  REQUIRE(bvh.header->node_count > 3000);
+  CHECK(world->info->adopt(&world->accel, bytes.data, backwards).ok);
+  for (std::uint32_t i : {2500u, 1200u, 1201u}) bvh.nodes[i].bounds[4][0] = 1e6f;
+  for (const ParallelLoop& loop : {ParallelLoop(), backwards}) {
+    Accel accel = world->accel;
+    const Status status = world->info->adopt(&accel, bytes.data, loop);
+    CHECK(!status.ok);
+    CHECK(std::strstr(status.message, "node ") != nullptr);
+    const unsigned long node = std::strtoul(std::strstr(status.message, "node ") + 5, nullptr, 10);
+    CHECK(node <= 1200);  // or its parent, whose box does not fit it any more
+    CHECK(node ==
+          std::strtoul(std::strstr(world->info->adopt(&accel, bytes.data, {}).message, "node ") + 5, nullptr, 10));
   }
 }
 

@@ -78,7 +78,7 @@ bool is_within_plan(const World& world) {
   Accel copy = world.accel;
   return found == n && leaves <= (n + 3) / 4 + n / 128 && bvh.header->node_count <= 7 * leaves / 15 + 1 &&
          world.keep.used_max <= world.info->need(static_cast<std::uint32_t>(n)) &&
-         world.info->adopt(&copy, world.accel.data).ok;
+         world.info->adopt(&copy, world.accel.data, {}).ok;
 }
 
 // Opens degenerate triangles up by moving every vertex elsewhere.

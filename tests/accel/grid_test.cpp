@@ -310,7 +310,7 @@ TEST_CASE("grid_is_not_given_up_while_a_query_is_under_way") {
 TEST_CASE("grid_is_not_adopted") {
   auto world = make_world(soup("soup", 50, 1, 0.1f, 162), &kGridAccel);
   Accel copy = world->accel;
-  CHECK_FALSE(kGridAccel.adopt(&copy, world->accel.data).ok);
-  CHECK_FALSE(kGridAccel.adopt(&copy, {}).ok);
+  CHECK_FALSE(kGridAccel.adopt(&copy, world->accel.data, {}).ok);
+  CHECK_FALSE(kGridAccel.adopt(&copy, {}, {}).ok);
   CHECK(accel_of(world->accel.data) == nullptr);
 }

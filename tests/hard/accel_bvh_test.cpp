@@ -27,7 +27,7 @@ std::uint32_t depth_of(const World& world) {
 // Whether every child's box is exactly the bounds of its content, and each triangle lies in one leaf.
 bool is_sound(const World& world) {
   Accel copy = world.accel;
-  return world.info->adopt(&copy, world.accel.data).ok;
+  return world.info->adopt(&copy, world.accel.data, {}).ok;
 }
 
 bool contains_children(const World& world, const LeafKind& kind) {

@@ -1,12 +1,11 @@
 // A .pray file in aligned memory, with access to private details of the format, to damage it on purpose.
 #pragma once
-#include <zlib.h>
-
 #include <cstdlib>
 #include <cstring>
 #include <memory>
 
 #include "scene/baked.h"
+#include "scene/baked_layout.h"
 
 class BakedFile {
  public:
@@ -45,6 +44,7 @@ inline void put_u64(const BakedFile& file, std::size_t at, std::uint64_t value) 
 
 // Makes the checksum match again, as an attacker would.
 inline void fix_checksum(const BakedFile& file) {
-  uLong value = crc32(0, file.data() + kByteCountAt, static_cast<uInt>(file.size() - kByteCountAt));
-  put_u32(file, kChecksumAt, static_cast<std::uint32_t>(value));
+  std::uint32_t version;
+  std::memcpy(&version, file.data() + kVersionAt, sizeof version);
+  put_u32(file, kChecksumAt, pocketray::baked_checksum(version, file.data(), file.size()));
 }

@@ -146,6 +146,24 @@ TEST_CASE("fitted_file_that_is_damaged_stays_damaged") {
   }
 }
 
+// Goal: a file of a version before the joined sums is read without levels, too, and damage to it is found.
+TEST_CASE("fitted_file_of_an_older_version_keeps_its_checksum") {
+  const auto scene = textured_scene();
+  const BakedFile whole = bake(scene->scene), expected = baked_without(scene->scene, 8);
+  for (const BakedFile* file : {&whole, &expected}) {
+    put_u32(*file, kVersionAt, kJoinedSumVersion - 1);
+    fix_checksum(*file);
+  }
+  Scene opened;
+  const Room room(whole, 8, whole.size());
+  REQUIRE(room.status.ok);
+  CHECK(holds(room.file, expected));
+  CHECK(baked_open(room.file.bytes, room.file.byte_count, &opened).ok);
+  whole.data()[whole.size() / 2] ^= 1;
+  const Room damaged(whole, 8, whole.size());
+  CHECK(!baked_open(damaged.file.bytes, damaged.file.byte_count, &opened).ok);
+}
+
 // Goal: a hostile table of textures or sections under a right checksum ends in one line. Method: every byte of a
 // texture and of the sections of textures and texels, several values each.
 TEST_CASE("fitted_file_refuses_wrong_levels") {

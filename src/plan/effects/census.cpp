@@ -11,6 +11,7 @@
 #include "scene/diffuse_transmission.h"
 #include "scene/invisible.h"
 #include "scene/metallic_roughness.h"
+#include "scene/triangle_scan.h"
 #include "shade/texture.h"
 
 namespace pocketray {
@@ -109,11 +110,14 @@ Census take_census(const Scene& scene, const Settings& settings) {
   CHECK(scene.material_maps.empty() || scene.material_maps.count == scene.materials.count);
   bool shows_unlit = !has(settings.forced_off, Effect::emission);
   Census c;
-  std::uint32_t used[kMaterialCountMax / 32] = {};
-  for (const Triangle& t : scene.triangles) {
-    std::uint32_t* word = &used[t.material() / 32];
-    const std::uint32_t mask = 1u << t.material() % 32;
-    if (!(*word & mask) && has_area(scene, t)) *word |= mask;
+  const Array<const Triangle> triangles = scene.triangles;
+  std::uint32_t used[kMaterialCountMax / 32] = {}, left = scene.materials.count;
+  for (std::uint32_t i = 0; i < triangles.count;) {
+    const std::uint32_t material = triangles[i].material(), mask = 1u << material % 32;
+    std::uint32_t* word = &used[material / 32];
+    if (!(*word & mask) && has_area(scene, triangles[i])) *word |= mask, --left;
+    if (left == 0) break;
+    i = *word & mask ? next_material(triangles, i) : i + 1;
   }
   for (const Reduction& r : scene.reductions) note(&c, r.what, r.count);
   for (std::uint32_t i = 0; i < scene.materials.count; ++i) {

@@ -12,6 +12,7 @@ import json
 import os
 import re
 import shlex
+import struct
 import subprocess
 import sys
 import tempfile
@@ -45,6 +46,15 @@ PARTS = (  # the first that matches a symbol
     ("surface", r"surface|smooth_normal|texture|shade|radiance|contact|normalize|mirror|dielectric|fresnel|brdf|"
                 r"spawn|det_|origin"),
     ("camera", r"trace_spans|camera|trace_frame|strip"),
+)
+# Starts from a file, with a camera that looks away, so that frames cost next to nothing; and its parts.
+START = ("bench", "--no-prices", "--frames", "1", "--size", "8x6", "--threads", "1", "--memory", "400M", "--camera",
+         "9000,9000,9000 9900,9900,9900 0,1,0 40")
+START_PARTS = (
+    ("checksum", r"block_sum|add_stripes|join_sums|crc32|hash_part"),
+    ("tree", r"node_is_plain|bvh_adopt|check_nodes|check_numbers|set_(no_)?rows|surely_has_area|is_plainly_sound|fill_block|"
+             r"fetch_triangle"),
+    ("arrays", r"largest_|least_magnitude|find_|has_word|bounds|validate_|is_surely_inside|take_census|has_light"),
 )
 
 
@@ -149,6 +159,23 @@ def bake(baker, scene, shared, folder):
     return target
 
 
+def triangles_in(path):
+    with open(path, "rb") as file:
+        return struct.unpack_from("<I", file.read(64 + 24 * 6), 64 + 24 * 5 + 16)[0]  # src/scene/baked_layout.h
+
+
+def measure_start(arguments, machine, baked, plugin, folder, symbols):
+    """Prints the instructions a triangle before the first frame."""
+    count, triangles = Count(), triangles_in(baked)
+    add_counted(count, machine, arguments.program, plugin, folder, symbols,
+                [START[0], baked, *START[1:]])
+    parts = {part: sum(n for name, n in count.symbols.items() if re.search(pattern, name))
+             for part, pattern in START_PARTS}
+    parts["other"] = count.instructions - sum(parts.values())
+    print(f"{os.path.basename(baked)}: {count.instructions / triangles:,.0f} instructions a triangle to start: " +
+          ", ".join(f"{part} {n / triangles:,.0f}" for part, n in parts.items()), file=sys.stderr, flush=True)
+
+
 def effects_in(baker, scene):
     run = subprocess.run([baker, "plan", scene, "--json", "-"], capture_output=True, text=True)
     plan = json.loads(run.stdout[run.stdout.index("{"):])
@@ -165,6 +192,9 @@ def measure(arguments):
             baked = bake(arguments.baker, scene, arguments.shared, folder)
             if not baked:
                 print(f"{scene}: skipped, since {arguments.shared}/scenes/{BUDDHA} is not there", file=sys.stderr)
+                continue
+            if arguments.start:
+                measure_start(arguments, machine, baked, plugin, folder, symbols)
                 continue
             count, start = count_pixels(machine, arguments.program, baked, plugin, folder, symbols, options)
             result = {"scene": scene, "class": arguments.cpu_class, "compiler": compiler_of(machine[2]),
@@ -233,6 +263,7 @@ def main():
     parser.add_argument("--scenes", nargs="+", default=SCENES, help="built-in scenes, files, or buddha")
     parser.add_argument("--shared", default="../shared", help="where the Buddha's scenes/ is")
     parser.add_argument("--effects", action="store_true", help="also price each effect: render without it")
+    parser.add_argument("--start", action="store_true", help="count only the start from a file, by triangle")
     parser.add_argument("--symbols", type=int, default=0, metavar="N", help="also list the N dearest functions")
     parser.add_argument("--options", default="", metavar="TEXT", help='options of render, as in --options="--selective .25"')
     parser.add_argument("--json", metavar="FILE", help="write the results; - for standard output")
