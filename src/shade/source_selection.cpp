@@ -20,7 +20,6 @@ constexpr std::uint16_t kEnd = 0xFFFF;
 
 // Pixels that select a light before rays to it are traced together, and the fewest such rays. Chosen: of 2, 4 and 8.
 constexpr std::uint32_t kTogetherMin = 4;
-constexpr std::uint8_t kTraced = 255;
 
 // Index of an entry's list: greater bounds, including infinite ones, go to later lists.
 std::uint32_t strength_of(float most) { return float_bits(most) >> 22; }
@@ -184,9 +183,10 @@ Vec3 SourceSearch::estimate() const {
   return sum;
 }
 
-void trace_selected(Tracer* tracer, const LightRun& run, std::uint32_t light) {
+void count_selected(Tracer* tracer, const LightRun& run, std::uint32_t light) {
   TileShadows* tile = tracer->tile_shadows;
-  if (!tile || light >= kTileLightMax || tile->selected[light] == kTraced) return;
+  CHECK(tile != nullptr);
+  CHECK_LT(light, kTileLightMax);
   const std::uint32_t shaded = tracer->tile_pixel + 1, count = ++tile->selected[light];
   if (count < kTogetherMin || 2 * count < shaded) return;
   TileReceivers* left = &tile->receivers;
@@ -195,7 +195,7 @@ void trace_selected(Tracer* tracer, const LightRun& run, std::uint32_t light) {
   left->count -= done;
   std::memmove(left->pixel, left->pixel + done, left->count);
   if (left->count < kTogetherMin || (emitter_of(tracer->light_points[light]) && is_grouped(*tracer))) return;
-  tile->selected[light] = kTraced;
+  tile->selected[light] = kTileTraced;
   trace_light(tracer, run, light, *left, nullptr, tile);
 }
 

@@ -9,6 +9,7 @@
 #include "effect/effect_probe.h"
 #include "shade/frame_data.h"
 #include "shade/surface.h"
+#include "shade/tile_shadows.h"
 #include "shade/tracer.h"
 
 namespace pocketray {
@@ -70,7 +71,11 @@ class SourceSearch {
 
 // Counts a light that the pixel being shaded selects. Once half of its tile's pixels so far have selected it, traces
 // the shadow rays of all others: they will mostly select it, too, and rays are cheaper together.
-void trace_selected(Tracer* tracer, const LightRun& run, std::uint32_t light);
+void count_selected(Tracer* tracer, const LightRun& run, std::uint32_t light);
+inline void trace_selected(Tracer* tracer, const LightRun& run, std::uint32_t light) {
+  const TileShadows* tile = tracer->tile_shadows;
+  if (tile && light < kTileLightMax && tile->selected[light] != kTileTraced) count_selected(tracer, run, light);
+}
 
 // Fills in the surfaces of a tile's first hits; no shadow ray is traced before its light is selected.
 void find_tile_surfaces(Tracer* tracer, const RayPacket& rays, const Hit* hits, TileShadows* shadows);

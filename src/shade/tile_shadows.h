@@ -11,6 +11,8 @@ constexpr std::uint32_t kTileLightMax = 256;  // further lights are tested ray b
 constexpr std::uint32_t kTilePolygonMax = 4;  // polygons of further lamps are viewed again
 constexpr std::uint32_t kTileSampleMax = 8;   // further samples are computed again; these take 12 KiB
 
+constexpr std::uint8_t kTileTraced = 255;
+
 // Unblocked light arriving at a pixel's first hit; see LightSample.
 struct TileSample {
   Vec3 direction, irradiance;
@@ -66,7 +68,7 @@ struct TileShadows {
   TilePolygon polygons[kTilePolygonMax];  // by index in LightRun::polygons; not set without them
   // Set with Effect::source_selection, as are `traced` and `blocked` of lights that most pixels select.
   TileReceivers receivers;               // from the pixel being shaded on
-  std::uint8_t selected[kTileLightMax];  // by so many pixels; or its rays are traced
+  std::uint8_t selected[kTileLightMax];  // by so many pixels, or kTileTraced: its rays are traced
 };
 
 // Fills `shadows` for the rays of a packet and their first hits.
