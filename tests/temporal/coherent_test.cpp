@@ -21,7 +21,7 @@ std::uint64_t seed_of_scripts() {
 
 int script_count() {
   const char* count = std::getenv("POCKETRAY_SCRIPTS");
-  return count ? std::atoi(count) : gate_share(60, 1000);
+  return count ? std::atoi(count) : gate_share(kEffortDivisor > 6 ? 15 : 60, 1000);
 }
 
 struct Pair {
