@@ -156,7 +156,7 @@ if "$program" --help | grep -q '^ *serve '; then
     check serve_on_${n}_ends_all_ranks wait_for 50 all_gone
     check serve_on_${n}_tells_what_others_traced grep -q '^[1-9].* clients, .*; ranks besides 0 traced [1-9]' run.out
   done
-  many=(seesaw --size 160x120 --coherence off --frames 0:59)
+  many=(seesaw --size 160x120 --coherence off --frames 0:199)
   serve 2
   "$program" render "${many[@]}" --emulate miyoo-mini -o two/k.ppm --server "$address" >device.out 2>&1 &
   device=$!
