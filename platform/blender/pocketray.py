@@ -109,11 +109,6 @@ def area_radiance(lamp, matrix, say):
     return radiance
 
 
-def is_portal(lamp):
-    """True if the light only guides Cycles' rays to openings."""
-    return "cycles" in lamp and bool(lamp["cycles"].get("is_portal"))
-
-
 def luminous_mesh(light, say):
     lamp = light.data
     mesh = bpy.data.meshes.new(lamp.name)
@@ -137,7 +132,8 @@ def area_lights_as_meshes(context, say):
     added = []
     try:
         for light in [item for item in bpy.data.objects if item.type == "LIGHT" and item.users_collection]:
-            if light.data.type != "AREA" or light.data.energy <= 0 or is_portal(light.data):
+            is_portal = "cycles" in light.data and light.data["cycles"].get("is_portal")  # only guides Cycles' rays
+            if light.data.type != "AREA" or light.data.energy <= 0 or is_portal:
                 continue
             collections = [collection for collection in light.users_collection if collection.library is None]
             if not collections:
