@@ -43,7 +43,7 @@ Status adopt(const std::string& name, const FittedFile& file, Renderer* renderer
   source->has_all_levels = file.is_whole, source->whole = file.whole;
   renderer->settings.texture_side_max = file.texture_side_max;
   storage->arena_bytes = renderer->memory.scene.used;
-  // Those that will render start later, once memory is planned.
+  // The threads that render start later, once memory is planned.
   Workers* workers = file.byte_count >= kSharedBytesMin ? start_workers(renderer->settings.threads) : nullptr;
   const Status status = baked_open(file.bytes, file.byte_count, &renderer->scene, loop_over(workers));
   stop_workers(workers);
